@@ -1,0 +1,136 @@
+"""The one place that knows threads and devices.
+
+Warp runs a CPU launch on one thread but releases the interpreter lock, so a launch here is cut into chunks over a
+thread pool; on CUDA it is a single launch. Every kernel takes ``start`` (the first index of its chunk) as its first
+argument, and thread ``t`` works on item ``start + t``:
+
+    @wp.kernel(enable_backward=False)
+    def double(start: int, values: wp.array(dtype=float), doubled: wp.array(dtype=float)):
+        i = start + wp.tid()
+        doubled[i] = 2.0 * values[i]
+
+    launch(double, len(values), inputs=[values], outputs=[doubled])
+
+A kernel writes its own item of the outputs only, so the result does not depend on the number of threads.
+"""
+
+import os
+import sys
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import warp as wp
+
+_CHUNKS_PER_THREAD = 8  # enough to even out uneven items, few enough that a launch (about 30 µs) stays cheap
+_LEAST_CHUNK = 32  # items; smaller chunks cost more to hand out than they save
+
+wp.config.log_level = wp.LOG_ERROR
+wp.config.enable_backward = False
+
+
+class _Machine:
+    """Where launches run: device name and thread pool. Process-wide, set by ``use``."""
+
+    device = "cpu"
+    threads = min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, 64)
+    pool: ThreadPoolExecutor | None = None
+    announce: Callable[[str], None] | None = None
+
+
+def use(*, device: str | None = None, threads: int | None = None) -> None:
+    """Choose the device (``"cpu"`` or ``"cuda"``) and the number of CPU threads for all launches of this process."""
+    if device is not None:
+        _Machine.device = device
+    if threads is not None and threads != _Machine.threads:
+        _Machine.threads = threads
+        if _Machine.pool is not None:
+            _Machine.pool.shutdown()
+        _Machine.pool = None
+
+
+def thread_count() -> int:
+    """Threads in use on the CPU."""
+    return _Machine.threads
+
+
+def parallel_map(function: Callable[[int], Any], count: int) -> list[Any]:
+    """``[function(0), ..., function(count - 1)]`` over the pool, for work that releases the interpreter lock."""
+    if _Machine.threads == 1 or count == 1:
+        return [function(i) for i in range(count)]
+    if _Machine.pool is None:
+        _Machine.pool = ThreadPoolExecutor(_Machine.threads)
+    return list(_Machine.pool.map(function, range(count)))
+
+
+def launch(kernel: Any, count: int, *, inputs: Sequence[Any], outputs: Sequence[Any]) -> None:
+    """Run ``kernel`` for items ``0 .. count - 1``. Arrays are NumPy, C-contiguous, and shared with the kernel on the CPU.
+
+    ``inputs`` and ``outputs`` follow ``start`` in the kernel's order; arrays in ``outputs`` are written in place.
+    """
+    if count == 0:
+        return
+    _load(kernel)
+    if _Machine.device != "cpu":
+        _launch_on_device(kernel, count, inputs, outputs)
+        return
+    arguments = _share(kernel, (*inputs, *outputs))
+    chunks = 1 if _Machine.threads == 1 else min(_Machine.threads * _CHUNKS_PER_THREAD, -(-count // _LEAST_CHUNK))
+    bounds = np.linspace(0, count, chunks + 1).astype(int)
+
+    def run(chunk: int) -> None:
+        first, last = int(bounds[chunk]), int(bounds[chunk + 1])
+        wp.launch(kernel, dim=last - first, inputs=[first, *arguments], device="cpu")
+
+    parallel_map(run, len(bounds) - 1)
+
+
+def _share(kernel: Any, values: Sequence[Any], device: str = "cpu") -> list[Any]:
+    """Warp views of NumPy arrays, in the element type the kernel declares (vectors too); anything else as it is."""
+    shared = []
+    for declared, value in zip(kernel.adj.args[1:], values, strict=True):
+        if isinstance(value, np.ndarray):
+            assert value.flags.c_contiguous, f"{declared.label}: kernels take C-contiguous arrays"
+            value = wp.array(value, dtype=declared.type.dtype, copy=False, device=device)
+        shared.append(value)
+    return shared
+
+
+def _launch_on_device(kernel: Any, count: int, inputs: Sequence[Any], outputs: Sequence[Any]) -> None:
+    """One launch on an accelerator, with the arrays copied there and the outputs copied back."""
+    on_device = _share(kernel, (*inputs, *outputs), _Machine.device)
+    wp.launch(kernel, dim=count, inputs=[0, *on_device], device=_Machine.device)
+    for target, result in zip(outputs, on_device[len(inputs) :], strict=True):
+        target[...] = result.numpy().reshape(target.shape)
+
+
+_loaded: set[str] = set()
+
+
+def _initialize() -> None:
+    """Start Warp; its C library warns on stderr of a missing GPU, which is no news to a CPU user."""
+    sys.stderr.flush()
+    stderr, null = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, 2)
+    try:
+        wp.init()
+    finally:
+        os.dup2(stderr, 2)
+        os.close(stderr)
+        os.close(null)
+
+
+def _load(kernel: Any) -> None:
+    """Compile or load the kernel's module once, before threads share it, and say so when it has to be compiled."""
+    module = kernel.module
+    if module.name in _loaded:
+        return
+    _initialize()
+    stamp = os.path.join(wp.config.kernel_cache_dir, ".texloom-" + module.name)
+    if not os.path.exists(stamp):
+        print("texloom: compiling kernels (once)", file=sys.stderr)
+    wp.load_module(module, device=_Machine.device)
+    with open(stamp, "w", encoding="utf-8"):
+        pass
+    _loaded.add(module.name)
