@@ -21,6 +21,11 @@ class Domain(Protocol):
         """Area each site stands for, in exemplar texels."""
         ...
 
+    @property
+    def edges(self) -> Int32[np.ndarray, "edge 2"]:
+        """Pairs of neighbouring sites."""
+        ...
+
     def centres(self, pitch: float, seed: int) -> Int32[np.ndarray, "patch"]:
         """Sites spread evenly, about ``pitch`` texels apart, so that patches a little wider than that cover all."""
         ...

@@ -1,0 +1,72 @@
+"""``texloom image``: a rectangle of any size from a sample."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from texloom.cli import options
+from texloom.cli.session import Session
+
+
+def image(
+    samples: options.Samples,
+    output: Annotated[Path, typer.Option("--output", "-o", help="An image, or a folder for a stack of maps.")],
+    size: Annotated[str, typer.Option(metavar="W[xH]", help="Texels.")] = "512",
+    tileable: Annotated[bool, typer.Option("--tileable", help="Opposite borders fit together.")] = False,
+    field: Annotated[
+        str | None, typer.Option(metavar="FIELD", help="uniform:DEGREES, radial, sine, ring, or a file of vectors.")
+    ] = None,
+    method: options.Method = None,
+    search: options.Search = None,
+    preset: options.Preset = None,
+    seed: options.Seed = 0,
+    sources: options.SourcesOut = None,
+    directx_normals: options.DirectX = False,
+    device: options.Device = "cpu",
+    threads: options.Threads = None,
+    as_json: options.Json = False,
+) -> None:
+    """Grow an image of any size from a sample; a stack of maps comes out aligned."""
+    from texloom.cli.methods import build_method
+
+    rows, columns = options.parse_size(size)
+    chosen = build_method(method, search=search, preset=preset)
+    path = options.only_sample(samples)
+    options.check_output(output, sources)
+
+    with Session(device=device, threads=threads, as_json=as_json) as session:
+        with session.stage("read"):
+            import numpy as np
+
+            from texloom.cli.planes import plane
+            from texloom.io.stack import read_exemplar
+            from texloom.output.gather import gather_images
+            from texloom.output.image import single_map, write_images
+            from texloom.output.sources_file import SavedSources, save_sources
+            from texloom.synthesis.synthesize import synthesize
+
+            exemplar = read_exemplar(path, directx_normals=directx_normals)
+            domain = plane(rows, columns, field=field, tileable=tileable)
+            if options.is_file(output):
+                single_map(exemplar.maps, output)
+        result = synthesize(exemplar, domain, chosen, seed=seed, report=session.report)
+        session.seconds.update(result.seconds)
+        settings = options.settings("image", path, method=chosen, seed=seed, size=size, tileable=tileable, field=field)
+        with session.stage("write"):
+            maps = gather_images(result.sources, exemplar, rows=rows, columns=columns)
+            session.wrote(write_images(output, maps, settings=settings))
+            if sources is not None:
+                shape = {"rows": np.array(rows), "columns": np.array(columns), "sample": np.array(exemplar.shape)}
+                session.wrote(save_sources(sources, SavedSources(result.sources, shape, settings)))
+        session.finish(
+            {
+                "method": settings["method"],
+                "seed": seed,
+                "size": (columns, rows),
+                "maps": list(maps),
+                "patches": result.patches,
+                "energy": list(result.energy),
+                "stopped": result.stopped,
+            }
+        )

@@ -1,0 +1,83 @@
+"""Options that several commands share, and the names they accept."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from texloom.errors import ParameterError
+
+METHODS = ("optimize", "patches")
+SEARCHES = ("exhaustive", "pca-tree", "pca-clusters", "clusters")
+PRESETS = ("resampling",)
+DEVICES = ("cpu", "cuda")
+MESH_SUFFIXES = (".obj", ".ply", ".off", ".stl", ".glb", ".gltf")
+IMAGE_SUFFIXES = (".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg")
+_LARGEST_SIDE = 32_768  # texels
+
+Samples = Annotated[
+    list[Path], typer.Argument(metavar="SAMPLE", help="An image, or a folder of maps (basecolor.png, normal.png, ...).")
+]
+Sample = Annotated[
+    Path, typer.Argument(metavar="SAMPLE", help="An image, or a folder of maps (basecolor.png, normal.png, ...).")
+]
+Method = Annotated[str | None, typer.Option(metavar="NAME", help="optimize or patches.")]
+Search = Annotated[str | None, typer.Option(metavar="NAME", help=f"{', '.join(SEARCHES[:-1])} or {SEARCHES[-1]}.")]
+Preset = Annotated[str | None, typer.Option(metavar="KEY", help=f"A paper's own parameters: {', '.join(PRESETS)}.")]
+Seed = Annotated[int, typer.Option(metavar="N", help="Same seed, same pixels.")]
+Device = Annotated[str, typer.Option(metavar="NAME", help="cpu or cuda.")]
+Threads = Annotated[int | None, typer.Option(metavar="N", min=1, max=1024, help="CPU threads; all cores if not given.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")]
+DirectX = Annotated[bool, typer.Option("--directx-normals", help="The sample's normal map has green down.")]
+SourcesOut = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Save the sources too (.npz), for `texloom apply`.")
+]
+
+
+def choose(what: str, name: str, names: Sequence[str]) -> str:
+    """The name, if it is one of the names."""
+    if name not in names:
+        choices = names[0] if len(names) == 1 else f"{', '.join(names[:-1])} or {names[-1]}"
+        raise ParameterError(f"unknown {what} {name!r}: choose {choices}")
+    return name
+
+
+def only_sample(samples: Sequence[Path]) -> Path:
+    """The one sample that present methods take."""
+    if len(samples) != 1:
+        raise ParameterError(
+            f"{len(samples)} samples were given, but each method takes 1 for now: give one image or folder"
+        )
+    return samples[0]
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """``W`` or ``WxH`` texels as (rows, columns)."""
+    parts = text.lower().replace("×", "x").split("x")
+    if len(parts) > 2 or not all(part.isascii() and part.isdigit() for part in parts):
+        raise ParameterError(f"--size {text!r} is not W or WxH in texels: give for example 512 or 640x480")
+    columns, rows = (int(part) for part in (parts * 2)[:2])
+    if not (1 <= rows <= _LARGEST_SIDE and 1 <= columns <= _LARGEST_SIDE):
+        raise ParameterError(f"--size {text}: sides go from 1 to {_LARGEST_SIDE} texels")
+    return rows, columns
+
+
+def check_output(*paths: Path | None) -> None:
+    """Refuse, before any work, a file whose folder is missing."""
+    for path in paths:
+        if path is not None and not path.resolve().parent.is_dir():
+            raise ParameterError(f"{path}: there is no folder {path.parent}: make it first, or choose another place")
+
+
+def is_file(output: Path) -> bool:
+    """Whether an output path names a single image rather than a folder."""
+    return output.suffix.lower() in IMAGE_SUFFIXES or bool(output.suffix and not output.is_dir())
+
+
+def settings(command: str, sample: Path, **facts: object) -> dict[str, str]:
+    """What is stored in every file written: version, command, sample and the parameters that are set."""
+    from importlib.metadata import version
+
+    stored = {name: str(value) for name, value in facts.items() if value is not None and value is not False}
+    return {"software": f"texloom {version('texloom')}", "command": command, "sample": sample.name, **stored}

@@ -1,0 +1,37 @@
+"""The demo material as files, as a user would have them."""
+
+from pathlib import Path
+
+import numpy as np
+
+from texloom.demo.animal import rabbit
+from texloom.demo.samples import SAMPLES, draw
+from texloom.mesh.mesh import Mesh
+from texloom.output.atomic import atomic
+from texloom.output.image import write_images
+
+
+def write_sample(folder: Path, name: str, *, size: int = 256, seed: int = 0) -> list[Path]:
+    """One sample as a folder of maps."""
+    return write_images(folder, draw(name, size=size, seed=seed).maps)
+
+
+def write_samples(folder: Path, *, size: int = 256, seed: int = 0) -> dict[str, Path]:
+    """Every sample as a folder of maps, by name."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in SAMPLES:
+        write_sample(folder / name, name, size=size, seed=seed)
+    return {name: folder / name for name in SAMPLES}
+
+
+def write_rabbit(path: Path) -> Path:
+    """The demo animal as OBJ."""
+    return write_obj(path, rabbit())
+
+
+def write_obj(path: Path, mesh: Mesh) -> Path:
+    """Positions and faces as OBJ text."""
+    with atomic(path) as beside, beside.open("w", encoding="ascii") as file:
+        np.savetxt(file, mesh.vertices, fmt="v %.6f %.6f %.6f")
+        np.savetxt(file, mesh.faces + 1, fmt="f %d %d %d")
+    return path

@@ -1,0 +1,321 @@
+"""Walking along a direction field over triangles laid flat one by one.
+
+A triangle's record holds, in its own 2-D frame (corner 0 at the origin, corner 1 at (a, 0), corner 2 at (b, c)):
+a, b, c; the n-th power of the field's direction at its corners, (re, im) each; the world length of a texel at its
+corners; the rotation across each edge into the next triangle's frame, (re, im) each. Points are barycentric, so they
+never leave their triangle; ``twin[f, e]`` is the halfedge ``3 f' + e'`` on the other side of edge e (corner e to e + 1),
+-1 at a boundary. A walk that cannot go on ends in face -1.
+"""
+
+# ruff: noqa: UP018 (in a kernel int(0) declares a variable that a loop may change, 0 a constant)
+
+import warp as wp
+
+MOST_FACES = wp.constant(256)  # crossed for one sample
+FAINTEST = wp.constant(0.05)  # power below this has no direction: a singularity
+SHARPEST = wp.constant(0.8)  # radians turned within a face
+HEAD_ON = wp.constant(0.5)  # cosine of the angle to an edge, below which two faces' fields meet head on
+MOST_AMBIGUOUS = wp.constant(2.2)  # radians turned by the power: near π two roots are equally near
+
+
+@wp.func
+def times(p: wp.vec2, q: wp.vec2) -> wp.vec2:
+    """Product of complex numbers."""
+    return wp.vec2(p[0] * q[0] - p[1] * q[1], p[0] * q[1] + p[1] * q[0])
+
+
+@wp.func
+def conjugate(p: wp.vec2) -> wp.vec2:
+    return wp.vec2(p[0], -p[1])
+
+
+@wp.func
+def quarter_turns(p: wp.vec2, quarters: int) -> wp.vec2:
+    """p turned counter-clockwise by 0, 1, 2 or 3 right angles."""
+    if quarters == 1:
+        return wp.vec2(-p[1], p[0])
+    if quarters == 2:
+        return -p
+    if quarters == 3:
+        return wp.vec2(p[1], -p[0])
+    return p
+
+
+@wp.func
+def power_at(record: wp.array2d(dtype=float), f: int, at: wp.vec3) -> wp.vec2:
+    return wp.vec2(
+        at[0] * record[f, 3] + at[1] * record[f, 5] + at[2] * record[f, 7],
+        at[0] * record[f, 4] + at[1] * record[f, 6] + at[2] * record[f, 8],
+    )
+
+
+@wp.func
+def texel_at(record: wp.array2d(dtype=float), f: int, at: wp.vec3) -> float:
+    return at[0] * record[f, 9] + at[1] * record[f, 10] + at[2] * record[f, 11]
+
+
+@wp.func
+def nearest_root(power: wp.vec2, heading: wp.vec2, order: int) -> wp.vec2:
+    """The order-th root of ``power`` nearest to ``heading``, a unit number; 0 where there is none to trust."""
+    if wp.length_sq(power) < FAINTEST * FAINTEST:
+        return wp.vec2(0.0, 0.0)
+    back = conjugate(heading)
+    change = power
+    for _ in range(order):
+        change = times(change, back)
+    if wp.abs(change[1]) < 0.2 * change[0]:
+        # Nearly always: series to float precision, four times as fast
+        t = change[1] / change[0]
+        t2 = t * t
+        x = t * (1.0 - t2 * (1.0 / 3.0 - t2 * (0.2 - t2 * (1.0 / 7.0 - t2 / 9.0)))) / float(order)
+        x2 = x * x
+        cosine = 1.0 - x2 * (0.5 - x2 * (1.0 / 24.0 - x2 / 720.0))
+        return times(heading, wp.vec2(cosine, x * (1.0 - x2 * (1.0 / 6.0 - x2 / 120.0))))
+    angle = wp.atan2(change[1], change[0])
+    if wp.abs(angle) > wp.min(SHARPEST * float(order), MOST_AMBIGUOUS):
+        return wp.vec2(0.0, 0.0)
+    angle = angle / float(order)
+    return wp.normalize(times(heading, wp.vec2(wp.cos(angle), wp.sin(angle))))
+
+
+@wp.func
+def corner(record: wp.array2d(dtype=float), f: int, c: int) -> wp.vec2:
+    if c == 0:
+        return wp.vec2(0.0, 0.0)
+    if c == 1:
+        return wp.vec2(record[f, 0], 0.0)
+    return wp.vec2(record[f, 1], record[f, 2])
+
+
+@wp.func
+def edge(record: wp.array2d(dtype=float), f: int, e: int) -> wp.vec2:
+    """From corner e to corner e + 1."""
+    return corner(record, f, (e + 1) % 3) - corner(record, f, e)
+
+
+@wp.func
+def rates(record: wp.array2d(dtype=float), f: int, way: wp.vec2) -> wp.vec3:
+    """Change of the barycentric coordinates along ``way``."""
+    r2 = way[1] / record[f, 2]
+    r1 = (way[0] - record[f, 1] * r2) / record[f, 0]
+    return wp.vec3(-r1 - r2, r1, r2)
+
+
+@wp.func
+def exit_of(at: wp.vec3, rate: wp.vec3):
+    """When the first coordinate reaches 0, and which: the corner opposite the edge that is reached."""
+    side = int(-1)
+    when = float(1.0e30)
+    for i in range(3):
+        if rate[i] < 0.0:
+            t = -at[i] / rate[i]
+            if t < when:
+                when = t
+                side = i
+    return when, side
+
+
+@wp.func
+def turn_across(record: wp.array2d(dtype=float), f: int, e: int) -> wp.vec2:
+    """The rotation from the frame of face f to that of the face across its edge e."""
+    return wp.vec2(record[f, 12 + 2 * e], record[f, 13 + 2 * e])
+
+
+@wp.func
+def walk(
+    record: wp.array2d(dtype=float),
+    twin: wp.array2d(dtype=int),
+    order: int,
+    face: int,
+    place: wp.vec3,
+    direction: wp.vec2,
+    quarters: int,
+    texels: float,
+):
+    """Go on for ``texels`` along the field turned by ``quarters``, from ``place``, where the field is ``direction``.
+
+    In every face one midpoint step (second order). Lengths are in texels all along the way, so there and back is the
+    same. Order 0 has no field: a straight line. Returns face, place and the field's direction there.
+    """
+    f = int(face)
+    at = place
+    heading = direction
+    left = float(texels)
+    entry = int(-1)  # the corner opposite the edge we came in by
+    for _ in range(MOST_FACES):
+        rate = rates(record, f, quarter_turns(heading, quarters))
+        when, side = exit_of(at, rate)
+        middle = at + (0.5 * wp.min(when, left * texel_at(record, f, at))) * rate
+        texel = texel_at(record, f, middle)
+        if order > 0:
+            heading = nearest_root(power_at(record, f, middle), heading, order)
+            if heading[0] == 0.0 and heading[1] == 0.0:
+                return -1, at, heading
+            rate = rates(record, f, quarter_turns(heading, quarters))
+            if entry >= 0:
+                if rate[entry] < 0.0:
+                    # The fields of two faces press towards their edge: slide along it, unless they meet head on
+                    along = wp.normalize(edge(record, f, (entry + 1) % 3))
+                    speed = wp.dot(quarter_turns(heading, quarters), along)
+                    if wp.abs(speed) < HEAD_ON:
+                        return -1, at, heading
+                    rate = rates(record, f, wp.sign(speed) * along)
+                    rate[entry] = 0.0
+            when, side = exit_of(at, rate)
+        if left * texel <= when:
+            at = wp.max(at + (left * texel) * rate, wp.vec3(0.0, 0.0, 0.0))
+            at = at / (at[0] + at[1] + at[2])
+            if order > 0:
+                heading = nearest_root(power_at(record, f, at), heading, order)
+                if heading[0] == 0.0 and heading[1] == 0.0:
+                    return -1, at, heading
+            return f, at, heading
+
+        left = wp.max(left - when / texel, 0.0)
+        at = at + when * rate
+        e = (side + 1) % 3
+        halfedge = twin[f, e]
+        if halfedge < 0:
+            return -1, at, heading
+        g = halfedge // 3
+        t = halfedge % 3
+        heading = times(heading, turn_across(record, f, e))
+        share = wp.clamp(at[e] / (at[e] + at[(e + 1) % 3]), 0.0, 1.0)
+        at = wp.vec3(0.0, 0.0, 0.0)
+        at[t] = 1.0 - share
+        at[(t + 1) % 3] = share
+        entry = (t + 2) % 3
+        f = g
+    return -1, at, heading
+
+
+@wp.kernel(enable_backward=False)
+def trace_lines(
+    start: int,
+    record: wp.array2d(dtype=float),
+    twin: wp.array2d(dtype=int),
+    order: int,
+    first: wp.array(dtype=int),  # sample each line goes on from
+    stride: int,  # between samples of a line
+    steps: int,
+    quarters: int,
+    face: wp.array(dtype=int),
+    place: wp.array(dtype=wp.vec3),
+    heading: wp.array(dtype=wp.vec2),
+):
+    """Samples first + stride, ..., first + steps * stride: each one texel on from the one before."""
+    s = first[start + wp.tid()]
+    f = int(face[s])
+    at = place[s]
+    way = heading[s]
+    at = wp.vec3(at[0], at[1], at[2])
+    way = wp.vec2(way[0], way[1])
+    for _ in range(steps):
+        s = s + stride
+        if f >= 0:
+            f, at, way = walk(record, twin, order, f, at, way, quarters, 1.0)
+        face[s] = f
+        place[s] = at
+        heading[s] = way
+
+
+@wp.func
+def point(position: wp.array(dtype=wp.vec3), faces: wp.array2d(dtype=int), f: int, at: wp.vec3, period: wp.vec3):
+    """A place in space; across a torus's border, near the face's first corner."""
+    p = position[faces[f, 0]]
+    q = nearest_image(position[faces[f, 1]] - p, period)
+    r = nearest_image(position[faces[f, 2]] - p, period)
+    return p + at[1] * q + at[2] * r
+
+
+@wp.func
+def nearest_image(difference: wp.vec3, period: wp.vec3) -> wp.vec3:
+    d = wp.vec3(difference[0], difference[1], difference[2])
+    for k in range(3):
+        if period[k] > 0.0:
+            d[k] = d[k] - period[k] * wp.round(d[k] / period[k])
+    return d
+
+
+@wp.func
+def axes_of(position: wp.array(dtype=wp.vec3), faces: wp.array2d(dtype=int), f: int, period: wp.vec3):
+    """A face's own 2-D axes in space, and its normal."""
+    p = position[faces[f, 0]]
+    q = nearest_image(position[faces[f, 1]] - p, period)
+    r = nearest_image(position[faces[f, 2]] - p, period)
+    x = wp.normalize(q)
+    normal = wp.normalize(wp.cross(q, r))
+    return x, wp.cross(normal, x), normal
+
+
+@wp.kernel(enable_backward=False)
+def meet_half_way(
+    start: int,
+    record: wp.array2d(dtype=float),
+    twin: wp.array2d(dtype=int),
+    order: int,
+    position: wp.array(dtype=wp.vec3),
+    faces: wp.array2d(dtype=int),
+    period: wp.vec3,
+    farthest: float,  # texels two paths may end apart
+    other_face: wp.array(dtype=int),
+    other_place: wp.array(dtype=wp.vec3),
+    other_heading: wp.array(dtype=wp.vec2),
+    face: wp.array(dtype=int),
+    place: wp.array(dtype=wp.vec3),
+    heading: wp.array(dtype=wp.vec2),
+):
+    """Every sample moves half way to where the other path put it; -1 where the two disagree too much.
+
+    Half way is half the chord between them, laid into the sample's face and walked straight.
+    """
+    s = start + wp.tid()
+    f = face[s]
+    g = other_face[s]
+    if g < 0:
+        return
+    if f < 0:
+        face[s] = g
+        place[s] = other_place[s]
+        heading[s] = other_heading[s]
+        return
+
+    if f == g:
+        a = heading[s]
+        if wp.dot(a, other_heading[s]) < 0.5:
+            face[s] = -1
+            return
+        middle = 0.5 * (place[s] + other_place[s])
+        place[s] = middle
+        heading[s] = nearest_root(power_at(record, f, middle), wp.vec2(a[0], a[1]), order)
+        return
+
+    x, y, n = axes_of(position, faces, f, period)
+    u, v, m = axes_of(position, faces, g, period)
+    cosine = wp.dot(n, m)
+    here = heading[s]
+    there = other_heading[s][0] * u + other_heading[s][1] * v
+    there = there - wp.dot(there, n) / wp.max(1.0 + cosine, 0.1) * (n + m)  # into this face's plane, least turn
+    apart = nearest_image(
+        point(position, faces, g, other_place[s], period) - point(position, faces, f, place[s], period), period
+    )
+    distance = wp.length(apart)
+    agree = wp.dot(there, here[0] * x + here[1] * y)
+    if distance > farthest * texel_at(record, f, place[s]) or cosine < -0.5 or agree < 0.5:
+        face[s] = -1
+        return
+
+    way = wp.vec2(wp.dot(apart, x), wp.dot(apart, y))
+    half = 0.5 * distance / texel_at(record, f, place[s])
+    if wp.length(way) < 1.0e-6 * texel_at(record, f, place[s]):
+        return
+    way = wp.normalize(way)
+    h, at, end = walk(record, twin, 0, f, place[s], way, 0, half)
+    if h >= 0:
+        turned = times(times(here, conjugate(way)), end)
+        root = nearest_root(power_at(record, h, at), turned, order)
+        if root[0] == 0.0 and root[1] == 0.0:
+            h = -1
+        place[s] = at
+        heading[s] = root
+    face[s] = h

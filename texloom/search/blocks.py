@@ -1,0 +1,91 @@
+"""Where in the exemplar does a partly known patch fit? Coarse candidates by matrix product, then texel by texel."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Bool, Float32, Int32
+
+from texloom.arrays import Image
+from texloom.kernels.launch import launch
+from texloom.kernels.patches import refine_anchors
+
+
+@dataclass(frozen=True, eq=False)
+class BlockSearch:
+    """Search of ``width × width`` blocks of an exemplar for patches of which some samples are known.
+
+    Cost is the mean squared difference over the known samples. All blocks at multiples of ``step`` texels are compared
+    on averages of ``step × step`` texels (|e|² m − 2 e·(m x), one matrix product); the ``shortlist`` best are moved by
+    up to ``step // 2`` texels on every ``stride``-th sample. ``width`` is a multiple of ``step``.
+    """
+
+    image: Image
+    width: int
+    mask: Bool[np.ndarray, "row column"] | None = None
+    step: int = 4  # texels
+    shortlist: int = 12
+    stride: int = 2  # samples
+
+    @cached_property
+    def usable(self) -> np.ndarray:
+        """(row, column) uint8: 1 where a block may begin."""
+        rows, columns = (size - self.width + 1 for size in self.image.shape[:2])
+        if self.mask is None:
+            return np.ones((rows, columns), np.uint8)
+        holes = np.pad(np.cumsum(np.cumsum(~self.mask, 0), 1), ((1, 0), (1, 0)))
+        w = self.width
+        inside = holes[w:, w:] - holes[:-w, w:] - holes[w:, :-w] + holes[:-w, :-w]
+        return (inside == 0).astype(np.uint8)
+
+    @cached_property
+    def anchors(self) -> Int32[np.ndarray, "candidate 2"]:
+        """Upper left texel of every coarse candidate, scan-line order."""
+        return np.argwhere(self.usable[:: self.step, :: self.step]).astype(np.int32) * np.int32(self.step)
+
+    @cached_property
+    def _coarse(self) -> tuple[np.ndarray, np.ndarray]:
+        """Candidates as rows: the averaged texels (candidate, cell · channel), and their squares (candidate, cell)."""
+        small = _average(self.image, self.step)
+        cells = self.width // self.step
+        windows = np.lib.stride_tricks.sliding_window_view(small, (cells, cells), axis=(0, 1))
+        at = self.anchors // self.step
+        rows = windows[at[:, 0], at[:, 1]].transpose(0, 2, 3, 1)
+        flat = np.ascontiguousarray(rows.reshape(len(at), -1))
+        return flat, (rows * rows).sum(3).reshape(len(at), -1)
+
+    def coarse_cost(
+        self, values: Float32[np.ndarray, "patch sample channel"], known: Float32[np.ndarray, "patch sample"]
+    ) -> Float32[np.ndarray, "patch candidate"]:
+        """Mean squared difference of averaged texels, over the known part; 0 where nothing is known."""
+        cells = self.width // self.step
+        blocks = (len(values), cells, self.step, cells, self.step)
+        share = known.reshape(blocks).mean((2, 4)).reshape(len(values), -1)
+        total = values.reshape(*blocks, -1).mean((2, 4)).reshape(*share.shape, -1)
+        own = (total * total).sum(2) / np.maximum(share, 1e-6)
+        texels, squares = self._coarse
+        cost = share @ squares.T - 2 * (total.reshape(len(values), -1) @ texels.T) + own.sum(1)[:, None]
+        return np.maximum(cost, 0) / np.maximum(share.sum(1), 1e-6)[:, None]
+
+    def refine(
+        self,
+        candidates: Int32[np.ndarray, "patch shortlist"],
+        values: Float32[np.ndarray, "patch sample channel"],
+        known: Float32[np.ndarray, "patch sample"],
+    ) -> tuple[Int32[np.ndarray, "patch shortlist 2"], Float32[np.ndarray, "patch shortlist"]]:
+        """The best anchor within half a step of each coarse candidate, and its cost on the samples themselves."""
+        near = np.ascontiguousarray(self.anchors[candidates])
+        best, cost = np.empty_like(near), np.empty(candidates.shape, np.float32)
+        launch(
+            refine_anchors,
+            candidates.size,
+            inputs=[near, self.step // 2, self.width, self.stride, values, known, self.image, self.usable],
+            outputs=[best, cost],
+        )
+        return best, cost
+
+
+def _average(image: Image, step: int) -> Image:
+    """Means of ``step × step`` texels; an incomplete last row or column is left out."""
+    rows, columns = image.shape[0] // step, image.shape[1] // step
+    return image[: rows * step, : columns * step].reshape(rows, step, columns, step, -1).mean((1, 3))

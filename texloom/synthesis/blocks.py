@@ -1,0 +1,140 @@
+"""Growing a texture from coherent blocks of the sample: match, cut, paste; every part of the sample in its fair share.
+
+The steps are those of image quilting (Efros & Freeman 2001) and graph-cut textures (Kwatra et al. 2003) on patches of
+any domain. Ours: seams are closed paths in the unrolled border of a patch, so that one dynamic program serves any
+order of laying; blocks pay for being used more than their fair share; and a block that continues its neighbour exactly
+counts no better than a good fit, which keeps copied regions small.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float32, Int32
+
+from texloom import draws
+from texloom.domain.cover import group_by_site
+from texloom.domain.patches import Patches
+from texloom.exemplar.blas import single_threaded
+from texloom.kernels.launch import launch
+from texloom.kernels.patches import cut_seams, paste_blocks
+from texloom.progress import Report
+from texloom.search.blocks import BlockSearch
+from texloom.synthesis.canvas import Canvas
+from texloom.synthesis.reading import read
+from texloom.synthesis.seams import Ring
+from texloom.synthesis.usage import Usage
+
+_CHOICE = 0xB10C  # purpose of the draws that choose a block where nothing is known yet
+_TYPICAL = 200  # the typical mismatch is that of the best 1 / 200 of all candidates
+_FLOOR = 0.7  # of the typical mismatch: fits better than this count alike
+
+
+@dataclass(frozen=True, eq=False)
+class BlockGrowth:
+    """One run of growth: the domain's patches, where blocks come from, and how seams are cut."""
+
+    patches: Patches
+    search: BlockSearch
+    ring: Ring
+    area: Float32[np.ndarray, "site"]
+    balance: float  # typical mismatches a block pays for having had its fair share already (squared)
+    seed: int
+
+    def run(self, canvas: Canvas, batches: Sequence[Int32[np.ndarray, "patch"]], report: Report) -> None:
+        """Lay every batch in turn onto the canvas; patches of one batch share no site."""
+        usage = Usage(self.search)
+        samples = np.arange(self.patches.width**2, dtype=np.int32)
+        with single_threaded():  # products whose rounding does not follow the number of threads
+            for done, chosen in enumerate(batches):
+                values, known = read(canvas, self.patches, chosen, samples)
+                anchors = self._choose(chosen, values, known, usage.excess())
+                seam = self._cut(anchors, values, known)
+                self._paste(canvas, usage, chosen, anchors, seam)
+                report("blocks", (done + 1) / len(batches))
+
+    @cached_property
+    def _entries(self) -> tuple[Int32[np.ndarray, "patches_plus_one"], Int32[np.ndarray, "entry"]]:
+        """Cover entries by patch."""
+        return group_by_site(self.patches.cover_patch, self.patches.count)
+
+    @cached_property
+    def _site(self) -> Int32[np.ndarray, "entry"]:
+        """The site of each cover entry."""
+        return np.repeat(np.arange(len(self.area), dtype=np.int32), np.diff(self.patches.cover_start))
+
+    def _choose(
+        self,
+        chosen: Int32[np.ndarray, "patch"],
+        values: Float32[np.ndarray, "patch sample channel"],
+        known: Float32[np.ndarray, "patch sample"],
+        excess: Float32[np.ndarray, "candidate"],
+    ) -> Int32[np.ndarray, "patch 2"]:
+        """The block that fits best where the canvas is coloured, a less used one among equals; any where it is bare."""
+        coarse = self.search.coarse_cost(values, known)
+        rank = min(max(coarse.shape[1] // _TYPICAL, 4), coarse.shape[1] - 1)
+        typical = np.partition(coarse, rank, axis=1)[:, rank, None]
+        bare = known.sum(1) == 0
+        coarse[bare] = draws.uniform(
+            self.seed, _CHOICE, index=(chosen[bare, None] * 65537 + np.arange(len(excess))).ravel()
+        ).reshape(-1, len(excess))
+        typical[bare] = 1.0
+
+        floor, price = _FLOOR * typical, self.balance * typical * excess**2
+        wish = np.maximum(coarse, floor) + price
+        shortlist = min(self.search.shortlist, wish.shape[1])
+        candidates = np.sort(np.argpartition(wish, shortlist - 1, axis=1)[:, :shortlist], axis=1).astype(np.int32)
+        anchors, cost = self.search.refine(candidates, values, known)
+        cost[bare] = np.take_along_axis(coarse[bare], candidates[bare], 1)
+        best = (np.maximum(cost, floor) + np.take_along_axis(price, candidates, 1)).argmin(1)
+        return np.ascontiguousarray(anchors[np.arange(len(chosen)), best])
+
+    def _cut(
+        self,
+        anchors: Int32[np.ndarray, "patch 2"],
+        values: Float32[np.ndarray, "patch sample channel"],
+        known: Float32[np.ndarray, "patch sample"],
+    ) -> Int32[np.ndarray, "patch perimeter"]:
+        """How deep inside its border each new block begins."""
+        around, depth, _ = self.ring.samples.shape
+        seam = np.empty((len(anchors), around), np.int32)
+        scratch = np.empty((len(anchors), 2, depth), np.float32), np.empty((len(anchors), 2 * around, depth), np.int8)
+        launch(
+            cut_seams,
+            len(anchors),
+            inputs=[self.ring.samples, anchors, self.patches.width, values, known, self.search.image],
+            outputs=[*scratch, seam],
+        )
+        return seam
+
+    def _paste(
+        self,
+        canvas: Canvas,
+        usage: Usage,
+        chosen: Int32[np.ndarray, "patch"],
+        anchors: Int32[np.ndarray, "patch 2"],
+        seam: Int32[np.ndarray, "patch perimeter"],
+    ) -> None:
+        """Give the sites inside the seams their new sources, and keep count of what is shown."""
+        start, entries = self._entries
+        own = np.concatenate([entries[start[p] : start[p + 1]] for p in chosen])
+        owner = np.repeat(np.arange(len(chosen), dtype=np.int32), np.diff(start)[chosen])
+        site = self._site[own]
+        was, coloured = canvas.position[site], canvas.label[site] >= 0
+        pasted = np.empty(len(own), np.uint8)
+        turn = self.patches.cover_turn
+        launch(
+            paste_blocks,
+            len(own),
+            inputs=[
+                *(own, owner, self._site, self.patches.cover_position),
+                np.zeros(1, np.float32) if turn is None else turn,
+                *(chosen, anchors, self.patches.width, self.ring.place, seam, self.search.image),
+            ],
+            outputs=[canvas.label, canvas.position, canvas.turn, canvas.colour, pasted],
+        )
+        took = pasted != 0
+        usage.add(canvas.position[site[took]], self.area[site[took]])
+        over = took & coloured
+        usage.add(was[over], -self.area[site[over]])

@@ -1,0 +1,43 @@
+"""Order as data: which patches may be laid at the same time."""
+
+import numpy as np
+from jaxtyping import Bool, Int32
+
+from texloom.domain.patches import Patches
+
+
+def overlaps(patches: Patches) -> Bool[np.ndarray, "patch patch"]:
+    """Whether two patches share a site. O(entries · cover) time, one byte a pair."""
+    shared = np.zeros((patches.count, patches.count), bool)
+    site_of_entry = np.repeat(np.arange(len(patches.cover_start) - 1, dtype=np.int32), np.diff(patches.cover_start))
+    for step in range(1, int(np.diff(patches.cover_start).max(initial=0))):
+        same = site_of_entry[step:] == site_of_entry[:-step]
+        shared[patches.cover_patch[:-step][same], patches.cover_patch[step:][same]] = True
+    return shared | shared.T
+
+
+def batches(order: Int32[np.ndarray, "patch"], shared: Bool[np.ndarray, "patch patch"]) -> list[np.ndarray]:
+    """Independent groups that keep the order wherever two patches overlap: each goes in the first group it can."""
+    group = np.full(len(order), -1)
+    for patch in order:
+        group[patch] = group[shared[patch]].max(initial=-1) + 1
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    by_group = np.lexsort((rank, group))
+    return np.split(by_group.astype(np.int32), np.flatnonzero(np.diff(group[by_group])) + 1)
+
+
+def breadth_first(shared: Bool[np.ndarray, "patch patch"], start: int = 0) -> Int32[np.ndarray, "patch"]:
+    """Patches by hops from ``start`` through overlaps; other parts of the domain follow, each from its first patch."""
+    hops = np.full(len(shared), -1)
+    order: list[np.ndarray] = []
+    front = np.array([start])
+    while True:
+        hops[front] = 1
+        order.append(front)
+        front = np.flatnonzero(shared[front].any(0) & (hops < 0))
+        if not len(front):
+            rest = np.flatnonzero(hops < 0)
+            if not len(rest):
+                return np.concatenate(order).astype(np.int32)
+            front = rest[:1]

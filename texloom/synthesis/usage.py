@@ -1,0 +1,36 @@
+"""A fair share for every part of the sample: how often each is shown so far."""
+
+import numpy as np
+from jaxtyping import Float32
+
+from texloom.search.blocks import BlockSearch
+
+
+class Usage:
+    """Texels of output a texel of sample, counted in cells of ``step × step`` texels."""
+
+    def __init__(self, search: BlockSearch) -> None:
+        rows, columns, _ = search.image.shape
+        self._step = search.step
+        self._shape = -(-rows // self._step), -(-columns // self._step)
+        self._shown = np.zeros(self._shape)
+        self._cells = search.width // search.step
+        self._candidates = search.anchors // search.step
+
+    def add(self, position: Float32[np.ndarray, "n 2"], area: Float32[np.ndarray, "n"]) -> None:
+        """Count sites that now show ``position`` (with negative area: no longer)."""
+        cell = np.clip((position * np.float32(1 / self._step)).astype(np.int32), 0, np.array(self._shape) - 1)
+        flat = cell[:, 0] * self._shape[1] + cell[:, 1]
+        self._shown += np.bincount(flat, weights=area, minlength=self._shown.size).reshape(self._shape)
+
+    def excess(self) -> Float32[np.ndarray, "candidate"]:
+        """Mean use of each candidate block over that of the whole sample: 1 is its fair share, 0 unused.
+
+        Until about a third of the sample has been shown once, the share is taken as if it had been: chance should not
+        weigh while there is little to share.
+        """
+        total = np.pad(self._shown.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
+        r, c, n = self._candidates[:, 0], self._candidates[:, 1], self._cells
+        block = total[r + n, c + n] - total[r, c + n] - total[r + n, c] + total[r, c]
+        fair = max(self._shown.mean(), 0.3 * self._step**2)
+        return (block / (n * n * fair)).astype(np.float32)
