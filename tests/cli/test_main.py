@@ -59,7 +59,7 @@ def test_version(capsys: Captured) -> None:
         (["image", "{sample}", "-o", "out.png", "--size", "0x4"], "--size 0x4: sides go from 1 to 32768 texels"),
         (["image", "{sample}", "-o", "out.png", "--size", "large"], "give for example 512 or 640x480"),
         (["image", "{sample}", "-o", "out.png", "--method", "weave"], "'weave': choose optimize or patches"),
-        (["image", "{sample}", "-o", "out.png", "--search", "x"], "exhaustive, pca-tree, pca-clusters or clusters"),
+        (["image", "{sample}", "-o", "out.png", "--search", "x"], "exhaustive, pca, pca-clusters or clusters"),
         (["image", "{sample}", "-o", "out.png", "--preset", "x"], "unknown preset 'x': choose resampling"),
         (["image", "{sample}", "{sample}", "-o", "out.png"], "2 samples were given"),
         (["image", "{sample}", "-o", "nowhere/out.png"], "there is no folder nowhere"),

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.meshes import all_meshes, closed_meshes, flat_square, joined, octahedron, shifted, sphere, tetrahedron, torus
@@ -79,6 +79,7 @@ def test_an_outlier_does_not_weld_the_rest():
     assert len(mend(mesh.vertices, mesh.faces).mesh.vertices) >= 66
 
 
+@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(sorted(closed_meshes())))
 def test_faces_turned_over_at_random_are_turned_back(seed, name):
     mesh = closed_meshes()[name]
@@ -182,6 +183,7 @@ def test_nested_crowding_ends_manifold():
     assert_manifold(mended.mesh)
 
 
+@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(4, 9), st.integers(1, 24))
 def test_any_faces_at_all_end_manifold_or_refused(seed, vertex_count, face_count):
     random = np.random.default_rng(seed)

@@ -51,6 +51,11 @@ def test_equal_costs_take_the_lowest_index():
     np.testing.assert_array_equal(match.index, np.arange(40) * 30)
 
 
+def test_equal_costs_in_different_blocks_take_the_lowest_index():
+    known = np.tile(vectors(3000, 8), (4, 1))
+    np.testing.assert_array_equal(Exhaustive().prepare(known).nearest(known[9000:]).index, np.arange(3000))
+
+
 def test_near_ties_are_told_apart():
     """A difference of one part in 10⁴ on one of many values is far under the rounding of the product."""
     base = 100 * RNG.random(200).astype(np.float32)

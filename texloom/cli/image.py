@@ -61,7 +61,8 @@ def image(
                 session.wrote(save_sources(sources, SavedSources(result.sources, shape, settings)))
         session.finish(
             {
-                "method": settings["method"],
+                "method": method or options.METHODS[0],
+                "preset": preset,
                 "seed": seed,
                 "size": (columns, rows),
                 "maps": list(maps),

@@ -9,7 +9,7 @@ import typer
 from texloom.errors import ParameterError
 
 METHODS = ("optimize", "patches")
-SEARCHES = ("exhaustive", "pca-tree", "pca-clusters", "clusters")
+SEARCHES = ("exhaustive", "pca", "pca-clusters", "clusters")
 PRESETS = ("resampling",)
 DEVICES = ("cpu", "cuda")
 MESH_SUFFIXES = (".obj", ".ply", ".off", ".stl", ".glb", ".gltf")

@@ -90,11 +90,11 @@ class Session:
 
 
 def in_words(facts: Mapping[str, Any]) -> str:
-    """Facts as aligned lines; empty ones left out, energies shortened to the last."""
-    lines = {name: _words(name, value) for name, value in facts.items() if value not in (None, [], {}, (), "")}
-    width = max((len(name) for name in lines), default=0)
+    """Facts as aligned lines, those of a list or table below one another; empty ones left out."""
+    told = {name: _words(name, value) for name, value in facts.items() if value not in (None, [], {}, (), "")}
+    width = max((len(name) for name in told), default=0)
     pad = "\n" + " " * (width + 2)
-    return "\n".join(f"{name:<{width}}  {text.replace(chr(10), pad)}" for name, text in lines.items())
+    return "\n".join(f"{name:<{width}}  {text.replace(chr(10), pad)}" for name, text in told.items())
 
 
 def _words(name: str, value: Any) -> str:
@@ -105,11 +105,11 @@ def _words(name: str, value: Any) -> str:
     if name == "energy":
         return f"{value[0]:.4g} to {value[-1]:.4g} in {len(value)} passes"
     if isinstance(value, Mapping):
-        return ", ".join(f"{key} {_words(key, part)}" for key, part in value.items())
+        between = "\n" if any(isinstance(part, Mapping) for part in value.values()) else ", "
+        return between.join(f"{key} {_words(key, part)}" for key, part in value.items())
     if isinstance(value, (list, tuple)):
-        return ("\n" if name in ("files", "mends", "maps") else "×" if name == "size" else " ").join(
-            _words("", part) for part in value
-        )
+        between = "\n" if name in ("files", "mends") else {"size": "×", "range": " to "}.get(name, ", ")
+        return between.join(_words("", part) for part in value)
     return str(value)
 
 

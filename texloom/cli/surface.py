@@ -1,5 +1,130 @@
-"""``texloom surface``: texture over a mesh."""
+"""``texloom surface``: texture over a mesh, along a field, back on the user's own mesh."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from texloom.cli import options
+from texloom.cli.session import Session
+from texloom.errors import ParameterError
+
+HOMES = ("vertex", "atlas")
+_REPEATS = 3.0  # sample widths across the mesh where neither --repeats nor --texel is given
 
 
-def surface() -> None:
-    """Grow texture over a mesh, along a direction and a scale field."""
+def surface(
+    mesh: Annotated[Path, typer.Argument(metavar="MESH", help="OBJ, PLY, OFF, STL, GLB or glTF.")],
+    samples: options.Samples,
+    output: Annotated[Path, typer.Option("--output", "-o", help="A .glb, .obj or .ply.")],
+    repeats: Annotated[
+        float | None, typer.Option(metavar="R", help="Sample widths across the longest side; 3 if not given.")
+    ] = None,
+    texel: Annotated[
+        float | None, typer.Option(metavar="SIZE", help="A texel's length in world units instead.")
+    ] = None,
+    direction: Annotated[
+        str, typer.Option(metavar="FIELD", help="smooth, curvature, x,y,z, a file of arrows, or rbf:FILE.")
+    ] = "smooth",
+    scale: Annotated[Path | None, typer.Option(metavar="FILE", help="Arrows or an array: larger, smaller.")] = None,
+    symmetry: Annotated[int, typer.Option(metavar="N", help="1, 2, 4 or 6 directions at a point.")] = 1,
+    progressive: Annotated[
+        bool, typer.Option("--progressive/--uniform", help="Follow the scales given, or lay all at one size.")
+    ] = True,
+    home: Annotated[
+        str | None, typer.Option("--as", metavar="HOME", help="vertex (colours) or atlas; by -o if not given.")
+    ] = None,
+    atlas_size: Annotated[
+        int | None, typer.Option(metavar="N", min=16, max=16_384, help="Texels a side; by the texture if not given.")
+    ] = None,
+    gutter: Annotated[int, typer.Option(metavar="N", min=0, max=256, help="Texels painted around charts.")] = 8,
+    fresh_atlas: Annotated[bool, typer.Option("--fresh-atlas", help="New UVs, whatever the mesh has.")] = False,
+    material: Annotated[str | None, typer.Option(metavar="NAME", help="Texture only this material.")] = None,
+    preview: Annotated[Path | None, typer.Option(metavar="FILE", help="A picture from four sides (.png).")] = None,
+    method: options.Method = None,
+    search: options.Search = None,
+    preset: options.Preset = None,
+    seed: options.Seed = 0,
+    sources: options.SourcesOut = None,
+    directx_normals: options.DirectX = False,
+    device: options.Device = "cpu",
+    threads: options.Threads = None,
+    as_json: options.Json = False,
+) -> None:
+    """Grow texture over a mesh of any shape, along a direction and a scale field."""
+    from texloom.cli.methods import build_method
+
+    chosen_home = _home(home, output)
+    chosen = build_method(method, search=search, preset=preset)
+    path = options.only_sample(samples)
+    if repeats is not None and texel is not None:
+        raise ParameterError("--repeats and --texel both set the size of the texture: give one of them")
+    options.check_output(output, preview, sources)
+
+    with Session(device=device, threads=threads, as_json=as_json) as session:
+        with session.stage("read"):
+            from texloom.cli import bring_home
+            from texloom.cli.fields import direction_field, scale_field
+            from texloom.domain.surface import Surface, texel_for_repeats
+            from texloom.io.mesh import read_mesh
+            from texloom.io.stack import read_exemplar
+            from texloom.synthesis.synthesize import synthesize
+
+            exemplar = read_exemplar(path, directx_normals=directx_normals)
+            model = read_mesh(mesh, material=material)
+        with session.stage("field"):
+            field = direction_field(model, direction, order=symmetry)
+            sizes = scale_field(model, scale, direction) if progressive else None
+        with session.stage("sites"):
+            length = texel or texel_for_repeats(model.mesh, repeats or _REPEATS, exemplar.shape[1])
+            domain = Surface.build(model.mesh, field, texel=length, scale=sizes)
+        result = synthesize(exemplar, domain, chosen, seed=seed, report=session.report)
+        session.seconds.update(result.seconds)
+        settings = options.settings(
+            "surface",
+            path,
+            method=chosen,
+            seed=seed,
+            mesh=mesh.name,
+            texel=length,
+            direction=direction,
+            scale=scale,
+            symmetry=symmetry,
+        )
+        with session.stage("write"):
+            homecoming = bring_home.bring_home(
+                bring_home.Grown(model, domain, result.sources, exemplar),
+                output,
+                home=chosen_home,
+                atlas=bring_home.AtlasWish(atlas_size, gutter, fresh_atlas),
+                preview=preview,
+                settings=settings,
+            )
+            session.wrote(homecoming.files)
+            if sources is not None:
+                session.wrote(bring_home.save(sources, result.sources, exemplar, settings))
+        session.finish(
+            {
+                "method": method or options.METHODS[0],
+                "preset": preset,
+                "seed": seed,
+                "sites": domain.count,
+                "texel": length,
+                "maps": list(exemplar.maps),
+                "patches": result.patches,
+                "energy": list(result.energy),
+                "stopped": result.stopped,
+                "as": chosen_home,
+                "uv": homecoming.uv,
+                "mends": list(model.mends),
+            }
+        )
+
+
+def _home(home: str | None, output: Path) -> str:
+    """Vertex colours or an atlas; checked against the suffix of the output."""
+    suffixes = {"vertex": (".glb", ".ply"), "atlas": (".glb", ".obj")}
+    chosen = options.choose("home", home or ("vertex" if output.suffix.lower() == ".ply" else "atlas"), HOMES)
+    if output.suffix.lower() not in suffixes[chosen]:
+        raise ParameterError(f"{output.name}: --as {chosen} is written as {' or '.join(suffixes[chosen])}")
+    return chosen

@@ -1,32 +1,45 @@
-"""An image as a place to grow texture: a plane or a torus of texels, one site each."""
+"""An image as a place to grow texture: a plane or a torus of texels, one site each, straight or along a field."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from jaxtyping import Float32, Int32
+from jaxtyping import Complex64, Float, Float32, Float64, Int32
 
 from texloom import draws
 from texloom.domain.cover import group_by_site
+from texloom.domain.network import lay_patches
 from texloom.domain.patches import Patches
-from texloom.errors import ParameterError
+from texloom.domain.scatter import scatter
+from texloom.errors import FieldError, ParameterError
+from texloom.field.trace import Flow, planar_flow
 
 _PHASE = 0x6C61  # purpose of the draw that shifts a torus's lattice
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Grid:
     """``rows × columns`` sites, one texel apart; site ``row * columns + column``. ``wrap`` joins opposite borders.
 
-    All frames are the image's own. A patch of width w around a centre c covers ``c - w // 2 ... c - w // 2 + w - 1``.
+    Without a field all frames are the image's own, and a patch of width w around a centre c covers
+    ``c - w // 2 ... c - w // 2 + w - 1``. With one, ``field`` holds at every site the direction [row, column] of its
+    +column axis (any length but 0), ``magnitude`` how much the texture is enlarged there (None: 1), and
+    patches are traced.
     """
 
     rows: int
     columns: int
     wrap: bool = False
+    field: Float[np.ndarray, "row column 2"] | None = None
+    magnitude: Float[np.ndarray, "row column"] | None = None
 
     def __post_init__(self) -> None:
         if self.rows < 1 or self.columns < 1:
             raise ParameterError(f"a grid of {self.rows} × {self.columns} texels has no site: use 1 × 1 or more")
+        if self.magnitude is not None and self.field is None:
+            raise ParameterError("a magnitude enlarges texture along a field: give a field too")
+        if self.field is not None:
+            _check_field(self.shape, self.field, self.magnitude)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -40,8 +53,8 @@ class Grid:
 
     @property
     def area(self) -> Float32[np.ndarray, "site"]:
-        """One texel each."""
-        return np.ones(self.count, np.float32)
+        """Area each site stands for, in exemplar texels: 1 where the texture is not enlarged."""
+        return (self._texel**-2).astype(np.float32)
 
     @property
     def edges(self) -> Int32[np.ndarray, "edge 2"]:
@@ -55,8 +68,11 @@ class Grid:
     def centres(self, pitch: float, seed: int) -> Int32[np.ndarray, "patch"]:
         """An even lattice, in scan-line order, at most ``pitch`` texels apart (less, so that the size divides).
 
-        A torus's lattice starts anywhere, by ``seed``; a plane's begins and ends half a pitch inside the border.
+        A torus's lattice starts anywhere, by ``seed``; a plane's begins and ends half a pitch inside the border. With
+        a magnitude there is no lattice: sites at least 0.84 ``pitch`` apart, by ``seed``, in texels of their own.
         """
+        if self.magnitude is not None:
+            return scatter(self.flow, self._texel, pitch, seed=seed)
         phase = draws.uniform(seed, _PHASE, index=np.arange(2)) if self.wrap else np.full(2, 0.5)
         row, column = (_spread(size, pitch, at) for size, at in zip(self.shape, phase, strict=True))
         return (row[:, None] * self.columns + column).ravel().astype(np.int32)
@@ -66,6 +82,8 @@ class Grid:
 
         On a torus smaller than ``width`` samples repeat; the cover keeps each site once, nearest the centre.
         """
+        if self.field is not None:
+            return lay_patches(self.flow, centres, width, axis=self._axis)
         row, row_once = self._steps(centres // self.columns, width, self.rows)
         column, column_once = self._steps(centres % self.columns, width, self.columns)
         sites = row[:, :, None] * np.int32(self.columns) + column[:, None, :]
@@ -84,6 +102,28 @@ class Grid:
             cover_position=np.stack(np.divmod(sample, np.int32(width)), axis=1, dtype=np.float32, casting="unsafe"),
         )
 
+    @cached_property
+    def flow(self) -> Flow:
+        """The field on triangles between the sites, to trace in."""
+        return planar_flow(self._direction, self._texel.reshape(self.shape), order=1, wrap=self.wrap)
+
+    @property
+    def _direction(self) -> Complex64[np.ndarray, "row column"]:
+        """The field as unit complex numbers, imaginary up the rows."""
+        assert self.field is not None
+        number = self.field[..., 1] - 1j * self.field[..., 0]
+        return (number / np.abs(number)).astype(np.complex64)
+
+    @property
+    def _texel(self) -> Float64[np.ndarray, "site"]:
+        """Length of a texel at each site, in steps of the grid."""
+        return np.ones(self.count) if self.magnitude is None else self.magnitude.ravel().astype(np.float64)
+
+    @property
+    def _axis(self) -> Complex64[np.ndarray, "face 3"]:
+        """Each site's frame in the faces around it: with one direction a site, the field itself."""
+        return self.flow.power
+
     def _steps(
         self, centre: Int32[np.ndarray, "patch"], width: int, size: int
     ) -> tuple[Int32[np.ndarray, "patch width"], np.ndarray]:
@@ -99,3 +139,18 @@ def _spread(size: int, pitch: float, phase: float) -> Int32[np.ndarray, "step"]:
     """Even steps over ``0 .. size - 1``, no farther apart than ``pitch`` (rounding aside)."""
     steps = max(1, int(np.ceil(size / pitch)))
     return (np.floor((np.arange(steps) + phase) * (size / steps)).astype(np.int64) % size).astype(np.int32)
+
+
+def _check_field(shape: tuple[int, int], field: np.ndarray, magnitude: np.ndarray | None) -> None:
+    """Raises: ParameterError, for a grid too thin to trace on; FieldError, unless the field fits it everywhere."""
+    if min(shape) < 3:
+        raise ParameterError(f"a grid of {shape[0]} × {shape[1]} texels is too thin for a field: use 3 × 3 or more")
+    if field.shape != (*shape, 2):
+        raise FieldError(
+            f"a field of shape {field.shape} for a grid of {shape[0]} × {shape[1]}: one [row, column] a site"
+        )
+    if not np.isfinite(field).all() or not field.any(axis=-1).all():
+        count = np.count_nonzero(~(np.isfinite(field).all(axis=-1) & field.any(axis=-1)))
+        raise FieldError(f"{count} of {field[..., 0].size} directions are 0 or not finite: give each site one")
+    if magnitude is not None and (magnitude.shape != shape or not (np.isfinite(magnitude) & (magnitude > 0)).all()):
+        raise FieldError(f"the magnitude must be {shape[0]} × {shape[1]} numbers above 0, one a site")

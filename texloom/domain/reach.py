@@ -67,22 +67,25 @@ def _cells(
 def _surroundings(
     flow: Flow, samples: Samples, axis: Complex64[np.ndarray, "face 3"]
 ) -> tuple[
+    int,
     Int32[np.ndarray, "face"],
-    Int32[np.ndarray, "face room"],
-    Float32[np.ndarray, "face room 2"],
-    Float32[np.ndarray, "face room 2"],
+    Int32[np.ndarray, "entry"],
+    Float32[np.ndarray, "entry 2"],
+    Float32[np.ndarray, "entry 2"],
 ]:
-    """Sites around every face that holds a sample: how many, which, their places and frames in the face's frame."""
-    wanted = np.zeros(len(flow.faces), np.uint8)
+    """Sites around every face that holds a sample: the room for each face, how many of it are used, and which sites,
+    their places and their frames in the face's frame."""
+    face_count = len(flow.faces)
+    wanted = np.zeros(face_count, np.uint8)
     wanted[samples.face[samples.face >= 0]] = 1
     inputs = [flow.record, flow.twin, flow.faces, np.ascontiguousarray(axis).view(np.float32).reshape(-1, 3, 2), wanted]
-    count, room = np.empty(len(flow.faces), np.int32), 16
+    count, room = np.empty(face_count, np.int32), 24
     while True:
-        shape = (len(flow.faces), room)
-        found = np.empty(shape, np.int32), np.empty((*shape, 2), np.float32), np.empty((*shape, 2), np.float32)
-        launch(unfold_around, len(flow.faces), inputs=inputs, outputs=[count, *found])
+        entries = face_count * room
+        found = np.empty(entries, np.int32), np.empty((entries, 2), np.float32), np.empty((entries, 2), np.float32)
+        launch(unfold_around, face_count, inputs=[*inputs, room], outputs=[count, *found])
         if count.max(initial=0) <= room:
-            return count, *found
+            return room, count, *found
         room = int(count.max())
 
 

@@ -14,9 +14,7 @@ _CHANCE = 0x7363  # purpose of the draw that orders the sites
 _LEAST_APART = 0.84  # of the pitch: dart throwing to the end then leaves one centre a squared pitch
 
 
-def scatter(
-    flow: Flow, texel: Float32[np.ndarray, "site"], pitch: float, *, seed: int
-) -> Int32[np.ndarray, "centre"]:
+def scatter(flow: Flow, texel: Float32[np.ndarray, "site"], pitch: float, *, seed: int) -> Int32[np.ndarray, "centre"]:
     """Sites at least 0.84 ``pitch`` texels apart, and no site farther than that from one of them; in site order.
 
     Dart throwing in an order hashed from ``seed``, until every site is chosen or within reach of a chosen one: about

@@ -29,7 +29,7 @@ def read_exr(path: str | Path) -> Float32[np.ndarray, "row column channel"]:
     path = Path(path)
     try:
         planes = _read_planes(path.read_bytes(), path.name)
-    except (struct.error, zlib.error, ValueError, IndexError, KeyError, MemoryError) as error:
+    except (struct.error, zlib.error, ValueError, IndexError, KeyError, OverflowError, MemoryError) as error:
         if isinstance(error, FileError):
             raise
         raise FileError(f"{path.name} is not an EXR file that can be read: export it again") from error

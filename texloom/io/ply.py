@@ -216,4 +216,4 @@ def _binary_row(element: _Element, body: bytes, start: int, order: str) -> tuple
 
 def _promise(elements: list[_Element]) -> str:
     """What the header promises, in words."""
-    return " and ".join(f"{element.count} × {element.name}" for element in elements)
+    return " and ".join(f"{element.count} {element.name} rows" for element in elements)

@@ -27,6 +27,47 @@ def sample_exemplar(exemplar: wp.array3d(dtype=float), row: float, column: float
     return upper + fr * (lower - upper)
 
 
+@wp.func
+def read_sample(
+    patch: int,
+    sample: int,
+    sites: wp.array3d(dtype=int),
+    weights: wp.array3d(dtype=float),
+    colour: wp.array2d(dtype=wp.vec4),
+    label: wp.array(dtype=int),
+    i: int,
+    j: int,
+    values: wp.array3d(dtype=wp.vec4),
+) -> float:
+    """values[i, j] = mean of the sample's coloured corners; returns 1 where they hold half of its weight, else 0."""
+    if sites.shape[2] == 1:
+        site = sites[patch, sample, 0]
+        if site >= 0:
+            if label[site] >= 0:
+                for g in range(colour.shape[1]):
+                    values[i, j, g] = colour[site, g]
+                return 1.0
+        for g in range(colour.shape[1]):
+            values[i, j, g] = wp.vec4(0.0, 0.0, 0.0, 0.0)
+        return 0.0
+    total = float(0.0)
+    for k in range(sites.shape[2]):
+        site = sites[patch, sample, k]
+        if site >= 0:
+            if label[site] >= 0:
+                total += weights[patch, sample, k]
+    known = wp.where(total >= 0.5, 1.0, 0.0)
+    for g in range(colour.shape[1]):
+        mean = wp.vec4(0.0, 0.0, 0.0, 0.0)
+        if known > 0.0:
+            for k in range(sites.shape[2]):
+                site = sites[patch, sample, k]
+                if label[site] >= 0:
+                    mean += (weights[patch, sample, k] / total) * colour[site, g]
+        values[i, j, g] = mean
+    return known
+
+
 @wp.kernel(enable_backward=False)
 def read_patches(
     start: int,
@@ -34,9 +75,9 @@ def read_patches(
     samples: wp.array(dtype=int),
     sites: wp.array3d(dtype=int),
     weights: wp.array3d(dtype=float),  # (1, 1, 1) where every sample is a site
-    colour: wp.array2d(dtype=float),
+    colour: wp.array2d(dtype=wp.vec4),  # channels in fours
     label: wp.array(dtype=int),
-    values: wp.array3d(dtype=float),
+    values: wp.array3d(dtype=wp.vec4),
     known: wp.array2d(dtype=float),
 ):
     """values[i, j] = mean of the corners of sample ``samples[j]`` of patch ``chosen[i]`` that are coloured (label >= 0).
@@ -46,28 +87,7 @@ def read_patches(
     item = start + wp.tid()
     i = item // samples.shape[0]
     j = item - i * samples.shape[0]
-    patch = chosen[i]
-    sample = samples[j]
-    total = float(0.0)
-    for c in range(colour.shape[1]):
-        values[i, j, c] = 0.0
-    for k in range(sites.shape[2]):
-        site = sites[patch, sample, k]
-        if site >= 0 and label[site] >= 0:
-            weight = float(1.0)
-            if sites.shape[2] > 1:
-                weight = weights[patch, sample, k]
-            total += weight
-            for c in range(colour.shape[1]):
-                values[i, j, c] = values[i, j, c] + weight * colour[site, c]
-    if total < 0.5:
-        known[i, j] = 0.0
-        for c in range(colour.shape[1]):
-            values[i, j, c] = 0.0
-    else:
-        known[i, j] = 1.0
-        for c in range(colour.shape[1]):
-            values[i, j, c] = values[i, j, c] / total
+    known[i, j] = read_sample(chosen[i], samples[j], sites, weights, colour, label, i, j, values)
 
 
 @wp.kernel(enable_backward=False)

@@ -79,9 +79,7 @@ def own_texels(
                     gap[row, column] = 0.0
                     owner[row, column] = face
                 elif reach2 > 0.0:
-                    away = float(
-                        wp.min(segment_gap(a, b, p), wp.min(segment_gap(b, c, p), segment_gap(c, a, p)))
-                    )
+                    away = float(wp.min(segment_gap(a, b, p), wp.min(segment_gap(b, c, p), segment_gap(c, a, p))))
                     if away <= reach2 and away < best:
                         gap[row, column] = wp.max(away, 1.0e-12)
                         owner[row, column] = face
@@ -260,12 +258,12 @@ def pyramid_tap(
 ):  # fmt: skip
     """Trilinear sample of a texture pyramid at a fractional level."""
     last = level_first.shape[0] - 1
-    l = wp.clamp(level, 0.0, float(last))
-    low = int(wp.floor(l))
+    fine = wp.clamp(level, 0.0, float(last))
+    low = int(wp.floor(fine))
     high = wp.min(low + 1, last)
     below = texture_tap(texture, level_first[low], rows >> low, columns >> low, uv)
     above = texture_tap(texture, level_first[high], rows >> high, columns >> high, uv)
-    return below + (l - float(low)) * (above - below)
+    return below + (fine - float(low)) * (above - below)
 
 
 @wp.func

@@ -31,10 +31,11 @@ def unfold_around(
     faces: wp.array2d(dtype=int),
     axis: wp.array2d(dtype=wp.vec2),  # the site's frame at every face corner, in the face's frame
     wanted: wp.array(dtype=wp.uint8),
+    room: int,  # for sites of a face
     count: wp.array(dtype=int),
-    site: wp.array2d(dtype=int),
-    place: wp.array2d(dtype=wp.vec2),
-    frame: wp.array2d(dtype=wp.vec2),
+    site: wp.array(dtype=int),
+    place: wp.array(dtype=wp.vec2),
+    frame: wp.array(dtype=wp.vec2),
 ):
     """Sites that a sample in face i can place, with their places and frames in the frame of i.
 
@@ -49,11 +50,11 @@ def unfold_around(
     far = wp.max(far, wp.length(corner(record, i, 2) - middle))
     far = far + FAR * wp.max(wp.max(record[i, 9], record[i, 10]), record[i, 11])
 
-    queue = Indices()  # faces, the rotation of each one's frame and the place of its corner 0 against the middle
+    queue = Indices()  # halfedges come in by, the rotation of each face's frame, its corner 0 against the middle
     turns = Points()
     origins = Points()
     seen = Indices()  # sites
-    queue[0] = i
+    queue[0] = 3 * i
     turns[0] = 1.0
     turns[1] = 0.0
     origins[0] = -middle[0]
@@ -63,45 +64,50 @@ def unfold_around(
     found = int(0)
     head = int(0)
     while head < queued:
-        f = queue[head]
+        f = queue[head] // 3
+        entry = queue[head] % 3
         turn = wp.vec2(turns[2 * head], turns[2 * head + 1])
         origin = wp.vec2(origins[2 * head], origins[2 * head + 1])
-        head = head + 1
-        for c in range(3):
+        for d in range(3):
+            # Edges in turn; beyond the first face the corner opposite the entry is the only one not seen from before
+            c = (entry + d) % 3
             p = origin + times(turn, corner(record, f, c))
-            q = origin + times(turn, corner(record, f, (c + 1) % 3))
-            v = faces[f, c]
-            k = int(0)
-            while k < seen_count:
-                if seen[k] == v:
-                    k = MOST
-                k = k + 1
-            if k < MOST and wp.length(p) <= far:
-                seen[seen_count] = v
-                seen_count = seen_count + 1
-                if found < site.shape[1]:
-                    site[i, found] = v
-                    place[i, found] = p + middle
-                    frame[i, found] = times(turn, axis[f, c])
-                found = found + 1
-
-            halfedge = twin[f, c]
-            if halfedge >= 0 and queued < MOST and distance_to(p, q) <= far:
-                g = halfedge // 3
+            if (head == 0 or d == 2) and wp.length_sq(p) <= far * far:
+                v = faces[f, c]
                 k = int(0)
-                while k < queued:
-                    if queue[k] == g:
+                while k < seen_count:
+                    if seen[k] == v:
                         k = MOST
                     k = k + 1
                 if k < MOST:
-                    onward = times(turn, conjugate(turn_across(record, f, c)))
-                    base = q - times(onward, corner(record, g, halfedge % 3))
-                    queue[queued] = g
-                    turns[2 * queued] = onward[0]
-                    turns[2 * queued + 1] = onward[1]
-                    origins[2 * queued] = base[0]
-                    origins[2 * queued + 1] = base[1]
-                    queued = queued + 1
+                    seen[seen_count] = v
+                    seen_count = seen_count + 1
+                    if found < room:
+                        site[i * room + found] = v
+                        place[i * room + found] = p + middle
+                        frame[i * room + found] = times(turn, axis[f, c])
+                    found = found + 1
+
+            halfedge = twin[f, c]
+            if halfedge >= 0 and queued < MOST and (head == 0 or d > 0):
+                q = origin + times(turn, corner(record, f, (c + 1) % 3))
+                if distance_to(p, q) <= far:
+                    g = halfedge // 3
+                    k = int(0)
+                    while k < queued:
+                        if queue[k] // 3 == g:
+                            k = MOST
+                        k = k + 1
+                    if k < MOST:
+                        onward = times(turn, conjugate(turn_across(record, f, c)))
+                        base = q - times(onward, corner(record, g, halfedge % 3))
+                        queue[queued] = halfedge
+                        turns[2 * queued] = onward[0]
+                        turns[2 * queued + 1] = onward[1]
+                        origins[2 * queued] = base[0]
+                        origins[2 * queued + 1] = base[1]
+                        queued = queued + 1
+        head = head + 1
     count[i] = found
 
 
@@ -121,10 +127,11 @@ def sites_in_cells(
     record: wp.array2d(dtype=float),
     order: int,
     width: int,
+    room: int,
     around_count: wp.array(dtype=int),
-    around_site: wp.array2d(dtype=int),
-    around_place: wp.array2d(dtype=wp.vec2),
-    around_frame: wp.array2d(dtype=wp.vec2),
+    around_site: wp.array(dtype=int),
+    around_place: wp.array(dtype=wp.vec2),
+    around_frame: wp.array(dtype=wp.vec2),
     face: wp.array(dtype=int),
     place: wp.array(dtype=wp.vec3),
     heading: wp.array(dtype=wp.vec2),
@@ -152,15 +159,15 @@ def sites_in_cells(
     way = wp.vec2(heading[s][0], heading[s][1])
     to_texels = conjugate(way) / texel_at(record, f, wp.vec3(at[0], at[1], at[2]))
     found = int(0)
-    for k in range(around_count[f]):
-        p = times(to_texels, around_place[f, k] - here)
+    for k in range(f * room, f * room + around_count[f]):
+        p = times(to_texels, around_place[k] - here)
         if p[0] >= -left and p[0] <= right and -p[1] >= -up and -p[1] <= down and wp.length_sq(p) <= FAR * FAR:
             if first.shape[0] > 0:
                 e = first[s] + found
-                site[e] = around_site[f, k]
+                site[e] = around_site[k]
                 offset[e] = wp.vec2(-p[1], p[0])
                 if order > 1:
-                    own = around_frame[f, k]
+                    own = around_frame[k]
                     turn = times(way, conjugate(wp.vec2(own[0], own[1])))
                     n = wp.round(wp.atan2(turn[1], turn[0]) * float(order) / 6.2831853)
                     steps[e] = (int(n) + order) % order

@@ -167,7 +167,9 @@ def region_areas(offsets: Offsets) -> Int[np.ndarray, "region"]:
 
 
 def _regions(
-    inside: Bool[np.ndarray, "row column"], across: Bool[np.ndarray, "row column2"], down: Bool[np.ndarray, "row2 column"]
+    inside: Bool[np.ndarray, "row column"],
+    across: Bool[np.ndarray, "row column2"],
+    down: Bool[np.ndarray, "row2 column"],
 ) -> Int[np.ndarray, "patch"]:
     """Region numbers, from 0 without gaps, of the patches inside, given which join their left and upper neighbours."""
     from scipy.sparse import coo_array

@@ -42,7 +42,9 @@ def score(
     """
     ours, theirs = encoded(result), encoded(sample)
     if ours.shape[2] != theirs.shape[2]:
-        raise ParameterError(f"the sample has {theirs.shape[2]} channels and the result {ours.shape[2]}: score like maps")
+        raise ParameterError(
+            f"the sample has {theirs.shape[2]} channels and the result {ours.shape[2]}: score like maps"
+        )
     places = grid_places(ours, queries)
     coherence, matches = _nearest_patches(ours, theirs, places)
     completeness, _ = _nearest_patches(theirs, ours, grid_places(theirs, queries))

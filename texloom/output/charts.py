@@ -75,7 +75,9 @@ def grow_charts(faces: FaceGraph) -> Int32[np.ndarray, "face"]:
     return chart
 
 
-def halve(faces: FaceGraph, chart: Int[np.ndarray, "face"], which: Int[np.ndarray, "chart"]) -> Int32[np.ndarray, "face"]:
+def halve(
+    faces: FaceGraph, chart: Int[np.ndarray, "face"], which: Int[np.ndarray, "chart"]
+) -> Int32[np.ndarray, "face"]:
     """Each named chart of two faces or more cut in two, the rest as they are."""
     chosen = np.isin(chart, which)
     first, second = _far_faces(faces, chart, chosen)

@@ -65,7 +65,9 @@ def gather_points(
 def gather_images(sources: SourceMap, exemplar: Exemplar, *, rows: int, columns: int) -> dict[str, Map]:
     """Every map of the stack over a grid of ``rows × columns`` sites in row order, stored as the exemplar's maps are."""
     if rows * columns != sources.count:
-        raise ParameterError(f"{rows}×{columns} is {rows * columns} texels, but the sources are of {sources.count} sites")
+        raise ParameterError(
+            f"{rows}×{columns} is {rows * columns} texels, but the sources are of {sources.count} sites"
+        )
     return {
         name: Map(gather_sites(sources, map).reshape(rows, columns, -1), map.kind, map.bits)
         for name, map in exemplar.maps.items()

@@ -152,7 +152,9 @@ def _writer(path: Path) -> Callable[[Path, Map, dict[str, str]], None]:
     try:
         return _WRITERS[path.suffix.lower()]
     except KeyError:
-        raise FileError(f"{path.name}: cannot write {path.suffix or 'no suffix'}: use .png, .tif, .exr or .jpg") from None
+        raise FileError(
+            f"{path.name}: cannot write {path.suffix or 'no suffix'}: use .png, .tif, .exr or .jpg"
+        ) from None
 
 
 def _suffix_for(map: Map, suffix: str) -> str:

@@ -41,32 +41,26 @@ def _areas(flat: Float[np.ndarray, "face 3 2"]) -> Float64[np.ndarray, "face"]:
     return 0.5 * np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
 
 
-def _uprighted(
-    flat: Float[np.ndarray, "face 3 2"], chart: Int[np.ndarray, "face"]
-) -> Float64[np.ndarray, "face 3 2"]:
+def _uprighted(flat: Float[np.ndarray, "face 3 2"], chart: Int[np.ndarray, "face"]) -> Float64[np.ndarray, "face 3 2"]:
     """Every chart turned to its smallest box, standing upright; a turn changes neither lengths nor handedness."""
     order = np.argsort(chart, kind="stable")
-    starts = np.flatnonzero(np.diff(chart[order], prepend=-1))
-    points = flat[order]
+    starts = 3 * np.flatnonzero(np.diff(chart[order], prepend=-1))
+    across, along = (np.ascontiguousarray(flat[order, :, axis]).reshape(-1) for axis in (0, 1))
     best, angle = np.full(len(starts), np.inf), np.zeros(len(starts))
     for trial in np.arange(_ANGLES) * (np.pi / 2 / _ANGLES):
-        for upright in (trial, trial + np.pi / 2):
-            low, high = _extent(points, starts, upright)
-            wide, tall = (high - low).T
-            better = (wide * tall < best * (1 - 1e-9)) & (tall >= wide)
-            best, angle = np.where(better, wide * tall, best), np.where(better, upright, angle)
+        wide = _spread(np.cos(trial) * across - np.sin(trial) * along, starts)
+        tall = _spread(np.sin(trial) * across + np.cos(trial) * along, starts)
+        better = wide * tall < best * (1 - 1e-9)
+        best = np.where(better, wide * tall, best)
+        angle = np.where(better, trial + np.where(tall >= wide, 0.0, np.pi / 2), angle)
     cosine, sine = np.cos(angle)[chart][:, None], np.sin(angle)[chart][:, None]
     x, y = flat[..., 0], flat[..., 1]
     return np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=2)
 
 
-def _extent(
-    points: Float[np.ndarray, "face 3 2"], starts: Int[np.ndarray, "chart"], angle: float
-) -> tuple[Float64[np.ndarray, "chart 2"], Float64[np.ndarray, "chart 2"]]:
-    """Least and greatest coordinates of each chart, turned by an angle."""
-    x, y = points[..., 0], points[..., 1]
-    turned = np.stack([np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y], axis=2)
-    return np.minimum.reduceat(turned.min(axis=1), starts), np.maximum.reduceat(turned.max(axis=1), starts)
+def _spread(values: Float64[np.ndarray, "corner"], starts: Int[np.ndarray, "chart"]) -> Float64[np.ndarray, "chart"]:
+    """Greatest less least value in each run."""
+    return np.maximum.reduceat(values, starts) - np.minimum.reduceat(values, starts)
 
 
 def _boxed(flat: Float[np.ndarray, "face 3 2"], chart: Int[np.ndarray, "face"]) -> Float64[np.ndarray, "face 3 2"]:
@@ -76,9 +70,7 @@ def _boxed(flat: Float[np.ndarray, "face 3 2"], chart: Int[np.ndarray, "face"]) 
     return flat - low[chart][:, None, :]
 
 
-def _outlines(
-    cells: Float[np.ndarray, "face 3 2"], chart: Int[np.ndarray, "face"], pad: int
-) -> list[_Outline]:
+def _outlines(cells: Float[np.ndarray, "face 3 2"], chart: Int[np.ndarray, "face"], pad: int) -> list[_Outline]:
     """Outline of every chart, widened by ``pad`` cells to all sides; a face counts whole in every column it touches."""
     low, high = np.floor(cells.min(axis=1)).astype(np.int32), np.floor(cells.max(axis=1)).astype(np.int32)
     widths = np.zeros(int(chart.max()) + 1, np.int32)

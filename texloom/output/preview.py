@@ -14,7 +14,11 @@ from texloom.output.rows import FaceRows, face_rows
 
 _KEY, _FILL = np.array([-0.55, 0.62, -0.65]), np.array([0.85, 0.1, -0.5])  # towards the lights: right, up, ahead
 _BACKGROUND = (0.80, 0.58)  # linear grey in the middle and in the corners
-_NOTHING3, _NOTHING2, _NOTHING4 = np.zeros((1, 3), np.float32), np.zeros((1, 3, 2), np.float32), np.zeros((1, 3, 4), np.float32)
+_NOTHING3, _NOTHING2, _NOTHING4 = (
+    np.zeros((1, 3), np.float32),
+    np.zeros((1, 3, 2), np.float32),
+    np.zeros((1, 3, 4), np.float32),
+)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -115,7 +115,7 @@ def _carried(
 def _to_local(part: Primitive, tangents: Float[np.ndarray, "corner 4"]) -> Float[np.ndarray, "corner 4"]:
     """World tangents in the node's own space; handedness is that of the world, where viewers build the bitangent."""
     local = tangents.astype(np.float64)
-    local[:, :3] = np.linalg.solve(part.to_world[:3, :3], local[:, :3].T).T
+    local[:, :3] = local[:, :3] @ np.linalg.pinv(part.to_world[:3, :3]).T
     length = np.linalg.norm(local[:, :3], axis=1, keepdims=True)
     local[:, :3] = np.divide(local[:, :3], length, out=np.tile([1.0, 0.0, 0.0], (len(local), 1)), where=length > 0)
     return local

@@ -46,9 +46,7 @@ def write_textured(
     raise FileError(f"{path.name}: a textured mesh is written as .glb or .obj")
 
 
-def textured_glb(
-    mesh: TexturedMesh, maps: Mapping[str, Map], *, settings: Mapping[str, str] | None = None
-) -> bytes:
+def textured_glb(mesh: TexturedMesh, maps: Mapping[str, Map], *, settings: Mapping[str, str] | None = None) -> bytes:
     """The mesh and its maps as one GLB. Vertices are split where a corner's UV or tangent differs."""
     draft = Draft()
     flat = mesh.faces.reshape(-1)

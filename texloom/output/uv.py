@@ -23,11 +23,12 @@ class UvDiagnosis:
     outside: int
     spanning: int
     degenerate: int
+    missing: int
 
     @property
     def usable(self) -> bool:
         """Whether an atlas can be baked on these UVs."""
-        return self.overlap <= _TOLERATED and self.spanning == 0 and self.degenerate < self.faces
+        return self.overlap <= _TOLERATED and self.spanning + self.missing == 0 and self.degenerate < self.faces
 
     @property
     def problems(self) -> tuple[str, ...]:
@@ -38,9 +39,13 @@ class UvDiagnosis:
         if self.mirrored:
             found.append(f"{self.mirrored} of {self.faces} faces have mirrored UVs")
         if self.outside:
-            found.append(f"{self.outside} of {self.faces} faces have UVs outside the unit square, where the texture wraps")
+            found.append(
+                f"{self.outside} of {self.faces} faces have UVs outside the unit square, where the texture wraps"
+            )
         if self.spanning:
             found.append(f"{self.spanning} of {self.faces} faces span a whole texture or more")
+        if self.missing:
+            found.append(f"{self.missing} of {self.faces} faces have no UVs")
         if self.degenerate:
             found.append(f"{self.degenerate} of {self.faces} faces have UVs without area")
         return tuple(found)
@@ -59,17 +64,20 @@ def diagnose_uv(uv: Float[np.ndarray, "face 3 2"]) -> UvDiagnosis:
     UVs outside the unit square are wrapped into it, as a repeating texture is read, before overlaps are counted. Mirrored alone is no obstacle (the tangent frame is mirrored too); with overlap it is the usual way of modelling one
     half and texturing it twice, which a texture without repetition cannot serve.
     """
+    faces = len(uv)
     uv = np.asarray(uv, np.float64)
+    uv = uv[np.isfinite(uv).all(axis=(1, 2))]
     first, second = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
     area = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
     negative, positive = int((area < 0).sum()), int((area > 0).sum())
     return UvDiagnosis(
-        faces=len(uv),
+        faces=faces,
         overlap=_overlap(uv),
         mirrored=0 if positive == 0 else negative,
         outside=int(((uv < 0) | (uv > 1)).any(axis=(1, 2)).sum()),
         spanning=int((np.ptp(uv, axis=1) >= 1).any(axis=1).sum()) if len(uv) else 0,
         degenerate=int((area == 0).sum()),
+        missing=faces - len(uv),
     )
 
 

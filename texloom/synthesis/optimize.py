@@ -13,6 +13,7 @@ from texloom.exemplar.features import match_image
 from texloom.exemplar.similarity import most_alike
 from texloom.progress import Report
 from texloom.search.blocks import BlockSearch
+from texloom.synthesis.canvas import in_fours
 from texloom.synthesis.correction import Correction, near_borders
 from texloom.synthesis.patches import PatchSampling
 from texloom.synthesis.result import Result
@@ -42,7 +43,7 @@ class Optimize:
     def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
         """Cover the domain with blocks, then correct their borders; see ``synthesize``."""
         clock = [time.perf_counter()]
-        image = match_image(exemplar)
+        image = in_fours(match_image(exemplar))
         similar = most_alike(image, self.alike, usable=exemplar.mask)
         clock.append(time.perf_counter())
         canvas, count, seconds = self.start.lay(exemplar, image, domain, seed=seed, report=report)

@@ -17,7 +17,7 @@ from texloom.exemplar.features import match_image
 from texloom.progress import Report
 from texloom.search.blocks import BlockSearch
 from texloom.synthesis.blocks import BlockGrowth
-from texloom.synthesis.canvas import Canvas
+from texloom.synthesis.canvas import Canvas, in_fours
 from texloom.synthesis.result import Result
 from texloom.synthesis.schedule import batches, breadth_first, overlaps
 from texloom.synthesis.seams import ring
@@ -53,7 +53,7 @@ class PatchSampling:
     def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
         """Cover the domain once; see ``synthesize``."""
         start = time.perf_counter()
-        canvas, count, seconds = self.lay(exemplar, match_image(exemplar), domain, seed=seed, report=report)
+        canvas, count, seconds = self.lay(exemplar, in_fours(match_image(exemplar)), domain, seed=seed, report=report)
         seconds["blocks"] = time.perf_counter() - start - sum(seconds.values())
         return Result(canvas.sources(), seconds=seconds, patches=count)
 

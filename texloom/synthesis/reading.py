@@ -6,7 +6,7 @@ from jaxtyping import Float32, Int32
 from texloom.domain.patches import Patches
 from texloom.kernels.launch import launch
 from texloom.kernels.patches import read_patches
-from texloom.synthesis.canvas import Canvas
+from texloom.synthesis.canvas import Canvas, fours
 
 
 def read(
@@ -21,8 +21,8 @@ def read(
     launch(
         read_patches,
         known.size,
-        inputs=[chosen, samples, patches.sites, weights_of(patches), canvas.colour, canvas.label],
-        outputs=[values, known],
+        inputs=[chosen, samples, patches.sites, weights_of(patches), fours(canvas.colour), canvas.label],
+        outputs=[fours(values), known],
     )
     return values, known
 

@@ -1,0 +1,160 @@
+"""Sources on a surface back on the user's mesh: vertex colours or a baked atlas, a preview, the sources themselves."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import ceil, log2, sqrt
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from texloom.domain.surface import Surface
+from texloom.exemplar.exemplar import Exemplar, Map, to_map
+from texloom.mesh.model import Model
+from texloom.output.atlas import bake, lay_atlas
+from texloom.output.atomic import atomic
+from texloom.output.gather import gather_sites
+from texloom.output.image import write_image
+from texloom.output.material import base_colour
+from texloom.output.preview import Skin, preview
+from texloom.output.retexture import retextured_glb
+from texloom.output.sites import SurfaceSites
+from texloom.output.sources_file import SavedSources, save_sources
+from texloom.output.tangents import corner_tangents
+from texloom.output.textured import TexturedMesh, write_textured
+from texloom.output.unwrap import unwrap
+from texloom.output.uv import diagnose_uv
+from texloom.output.vertex_colours import linear_rgba, write_vertex_colours
+from texloom.sources import SourceMap
+
+_FILLED = 0.6  # share of an atlas that charts usually cover
+_SMALLEST, _LARGEST = 256, 8192  # texels a side, where the user leaves the size open
+
+
+@dataclass(frozen=True, eq=False)
+class Grown:
+    """A mesh with texture grown over it."""
+
+    model: Model
+    surface: Surface
+    sources: SourceMap
+    exemplar: Exemplar
+
+    @property
+    def sites(self) -> SurfaceSites:
+        """The surface as outputs need it."""
+        refined = self.surface.refined
+        return SurfaceSites(
+            vertices=refined.mesh.vertices,
+            faces=refined.mesh.faces,
+            direction=self.surface.direction,
+            normal=self.surface.normal,
+            texel=self.surface.texel,
+            scale=self.surface.scale,
+            parent=refined.parent,
+            corners=refined.corner_barycentric,
+        )
+
+
+@dataclass(frozen=True)
+class AtlasWish:
+    """Texels a side (None: as many as the texture has), texels around charts, and whether to make new UVs anyway."""
+
+    size: int | None = None
+    gutter: int = 8
+    fresh: bool = False
+
+
+@dataclass(frozen=True)
+class Homecoming:
+    """Files written, and whose UVs were used ("" for vertex colours)."""
+
+    files: list[Path]
+    uv: str = ""
+
+
+def bring_home(
+    grown: Grown, output: Path, *, home: str, atlas: AtlasWish, preview: Path | None, settings: Mapping[str, str]
+) -> Homecoming:
+    """Write the textured mesh, and a picture of it where one is asked for."""
+    if home == "vertex":
+        files = [write_vertex_colours(output, grown.sites, grown.sources, grown.exemplar, settings=settings)]
+        return Homecoming(files + _write_preview(preview, grown, _coloured(grown)))
+    uv, whose = _choose_uv(grown, atlas)
+    mesh = grown.model.mesh
+    tangents = corner_tangents(mesh.vertices, mesh.faces, uv, normals=mesh.vertex_normals[mesh.faces])
+    size = atlas.size or _fitting_size(grown.surface)
+    laid = lay_atlas(grown.sites, uv, size=size, gutter=atlas.gutter, tangents=tangents)
+    maps = bake(grown.sources, laid, grown.exemplar.maps)
+    files = _write_mesh(output, grown.model, maps, uv, tangents, fresh=whose != "own", settings=settings)
+    return Homecoming(files + _write_preview(preview, grown, _baked(maps, uv, tangents)), f"{whose}, {size}×{size}")
+
+
+def save(path: Path, sources: SourceMap, exemplar: Exemplar, settings: Mapping[str, str]) -> Path:
+    """The sources as a file."""
+    return save_sources(path, SavedSources(sources, {"sample": np.array(exemplar.shape)}, settings))
+
+
+def _choose_uv(grown: Grown, wish: AtlasWish) -> tuple[Float[np.ndarray, "face 3 2"], str]:
+    """The mesh's own UVs where they can take a texture, else new ones; and which."""
+    own = grown.model.uv
+    if own is not None and not wish.fresh:
+        diagnosis = diagnose_uv(own)
+        if diagnosis.usable:
+            return own, "own"
+        reason = f"fresh atlas because {'; '.join(diagnosis.problems)}"
+    else:
+        reason = "fresh atlas"
+    return unwrap(grown.model.mesh, size=wish.size or _fitting_size(grown.surface), gutter=wish.gutter), reason
+
+
+def _fitting_size(surface: Surface) -> int:
+    """The power of two at which an atlas texel is about a texel of the sample."""
+    side = sqrt(float(surface.area.sum(dtype=np.float64)) / _FILLED)
+    return min(max(2 ** ceil(log2(max(side, 1.0))), _SMALLEST), _LARGEST)
+
+
+def _write_mesh(
+    output: Path,
+    model: Model,
+    maps: Mapping[str, Map],
+    uv: Float[np.ndarray, "face 3 2"],
+    tangents: Float[np.ndarray, "face 3 4"],
+    *,
+    fresh: bool,
+    settings: Mapping[str, str],
+) -> list[Path]:
+    """A GLB that came in goes back whole; any other mesh is written anew."""
+    if model.document is not None and output.suffix.lower() == ".glb":
+        content = retextured_glb(model, maps, uv=uv if fresh else None, tangents=tangents, settings=settings)
+        with atomic(output) as beside:
+            beside.write_bytes(content)
+        return [output]
+    mesh = model.mesh
+    textured = TexturedMesh(
+        vertices=mesh.vertices, faces=mesh.faces, normals=mesh.vertex_normals, uv=uv, tangents=tangents
+    )
+    return write_textured(output, textured, maps, settings=settings)
+
+
+def _coloured(grown: Grown) -> Skin:
+    """What vertex colours look like."""
+    base = base_colour(grown.exemplar.maps) or next(iter(grown.exemplar.maps))
+    return Skin(colours=linear_rgba(gather_sites(grown.sources, grown.exemplar.maps[base]))[:, :3])
+
+
+def _baked(maps: Mapping[str, Map], uv: Float[np.ndarray, "face 3 2"], tangents: Float[np.ndarray, "face 3 4"]) -> Skin:
+    """What the atlas looks like."""
+    image = maps[base_colour(maps) or next(iter(maps))].image
+    colours = linear_rgba(image.reshape(-1, image.shape[2]))[:, :3].reshape(*image.shape[:2], 3)
+    normal = maps.get("normal")
+    return Skin(texture=colours, uv=uv, bumps=None if normal is None else normal.image, tangents=tangents)
+
+
+def _write_preview(path: Path | None, grown: Grown, skin: Skin) -> list[Path]:
+    """A picture from four sides."""
+    if path is None:
+        return []
+    mesh = grown.model.mesh if skin.uv is not None else grown.surface.refined.mesh
+    picture = preview(mesh.vertices, mesh.faces, skin, normals=mesh.vertex_normals)
+    return [write_image(path, to_map(picture, "colour"))]
