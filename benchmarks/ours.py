@@ -50,7 +50,7 @@ class Spent:
 def command(*arguments: str | Path, threads: int | None = None) -> Spent:
     """Wall seconds and peak resident memory of one whole ``texloom`` process."""
     chosen = [] if threads is None else ["--threads", str(threads)]
-    return process([sys.executable, "-m", "texloom", *map(str, arguments), *chosen])
+    return process([str(Path(sys.executable).with_name("texloom")), *map(str, arguments), *chosen])
 
 
 def process(line: Sequence[str]) -> Spent:

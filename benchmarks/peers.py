@@ -1,4 +1,4 @@
-"""The tools people use today, run as a fair user would: default settings, the whole sample, a result of the asked size."""
+"""The tools people use today, run as a fair user would: default settings, the whole sample."""
 
 import contextlib
 import tempfile

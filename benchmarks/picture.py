@@ -76,8 +76,8 @@ def _wins(rows: dict[str, Row]) -> str:
     worst = max(row["texloom --tileable"]["seam"] for row in rows.values())
     return (
         f"swd no worse than the better peer on **{won} of {len(rows)}**; median completeness "
-        f"**{median('texloom', 'completeness'):.2f}** ({complete}); median copy **{median('texloom', 'copy'):.0f} px**; "
-        f"worst seam of a tile **{worst:.2f}**."
+        f"**{median('texloom', 'completeness'):.2f}** ({complete}); "
+        f"median copy **{median('texloom', 'copy'):.0f} px**; worst seam of a tile **{worst:.2f}**."
     )
 
 

@@ -14,15 +14,20 @@ STACK = "bricks-rough-500"
 SIZE, STACK_SIZE = 512, 2048
 REPEATS = 3
 
-_GMIC = "import gmic, sys; gmic.run(f'srand 7 {sys.argv[1]} syntexturize_matchpatch 512,512 round cut 0,255 output {sys.argv[2]}')"
-_GMIC_WARM = (
-    "import gmic, sys, time\n"
-    "line = f'srand 7 {sys.argv[1]} syntexturize_matchpatch 512,512 round cut 0,255 output {sys.argv[2]}'\n"
-    "gmic.run(line); times = []\n"
-    "for _ in range(3):\n"
-    "    start = time.perf_counter(); gmic.run(line); times.append(time.perf_counter() - start)\n"
-    "print(sorted(times)[1], file=open(sys.argv[3], 'w'))"
-)
+_GMIC = """
+import gmic, sys
+gmic.run(f"srand 7 {sys.argv[1]} syntexturize_matchpatch 512,512 round cut 0,255 output {sys.argv[2]}")
+"""
+_GMIC_WARM = """
+import gmic, sys, time
+def run():
+    start = time.perf_counter()
+    gmic.run(f"srand 7 {sys.argv[1]} syntexturize_matchpatch 512,512 round cut 0,255 output {sys.argv[2]}")
+    return time.perf_counter() - start
+run()
+with open(sys.argv[3], "w") as file:
+    file.write(str(sorted(run() for _ in range(3))[1]))
+"""
 
 
 def main(data: Path) -> None:

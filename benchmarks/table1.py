@@ -1,5 +1,6 @@
 """The published table of local resampling (Chen, Liu & Dong, table 1) beside ours, and how cost grows with the mesh."""
 
+import importlib
 import importlib.util
 from pathlib import Path
 from typing import Any
@@ -27,7 +28,7 @@ def main(data: Path) -> None:
     if importlib.util.find_spec("texloom.systems.resampling") is None:
         print("  texloom.systems.resampling is not there yet: nothing to time")
         return
-    from texloom.systems import resampling
+    resampling: Any = importlib.import_module("texloom.systems.resampling")
 
     rows = []
     for (method, search), published in PUBLISHED.items():

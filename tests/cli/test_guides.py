@@ -4,8 +4,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from texloom.cli.guides import read_guides
+from texloom.cli.fields import direction_field, guide_file, scale_field
+from texloom.cli.guides import read_arrows, read_rows
 from texloom.errors import FieldError, FileError, TexloomError
+from texloom.field.direction import vertex_directions
 from texloom.mesh.mesh import Mesh
 from texloom.mesh.model import Model
 
@@ -23,30 +25,45 @@ def written(folder: Path, arrows: object) -> Path:
     return path
 
 
-def test_arrows_stand_at_vertices_of_the_file_or_at_the_nearest_point(tmp_path: Path, model: Model) -> None:
-    path = written(
-        tmp_path,
-        [{"vertex": 3, "direction": [0, 1, 0]}, {"point": [0.1, 0.9, 5], "direction": [2, 0, 0], "scale": 0.5}],
+def test_arrows_stand_at_vertices_counted_as_in_the_file(tmp_path: Path, model: Model) -> None:
+    first, second = read_arrows(
+        written(tmp_path, [{"vertex": 3, "direction": [0, 1, 0]}, {"point": [0.1, 0.9, 5], "scale": 0.5}]), model
     )
-    guides = read_guides(path, model, wanted="direction")
-    vertex, direction = guides.directed()
-    np.testing.assert_array_equal(vertex, [1, 3])
-    np.testing.assert_array_equal(direction, [[0, 1, 0], [2, 0, 0]])
-    vertex, scale = guides.scaled()
-    np.testing.assert_array_equal(vertex, [3])
-    np.testing.assert_array_equal(scale, [0.5])
+    assert (first.vertex, first.direction, first.scale) == (1, (0.0, 1.0, 0.0), None)
+    assert (second.point, second.direction, second.scale) == ((0.1, 0.9, 5.0), None, 0.5)
 
 
 @pytest.mark.parametrize("suffix", [".npy", ".txt", ".csv"])
-def test_an_array_has_one_row_a_vertex_of_the_file(tmp_path: Path, model: Model, suffix: str) -> None:
+def test_rows_are_those_of_the_files_vertices(tmp_path: Path, model: Model, suffix: str) -> None:
     path = tmp_path / f"scale{suffix}"
     values = np.array([9.0, 1, 2, 3, 4])
     if suffix == ".npy":
         np.save(path, values)
     else:
         path.write_text("\n".join(f"{value}" for value in values))
-    vertex, scale = read_guides(path, model, wanted="scale").scaled()
-    np.testing.assert_array_equal(scale[np.argsort(vertex)], [4, 3, 2, 1])
+    np.testing.assert_array_equal(read_rows(path, model, columns=1), [[4], [3], [2], [1]])
+
+
+@pytest.mark.parametrize("prefix", ["", "rbf:"])
+def test_a_field_goes_through_the_arrows_of_a_file(tmp_path: Path, model: Model, prefix: str) -> None:
+    path = written(tmp_path, [{"vertex": 3, "direction": [3, 3, 9], "scale": 2.0}])
+    field = direction_field(model, f"{prefix}{path}", order=1)
+    diagonal = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0])
+    np.testing.assert_allclose(vertex_directions(model.mesh, field), np.tile(diagonal, (4, 1)), atol=1e-6)
+    scale = scale_field(model, None, f"{prefix}{path}")
+    assert scale is not None
+    np.testing.assert_allclose(scale, 2.0)
+
+
+def test_rows_of_vectors_are_the_field(tmp_path: Path, model: Model) -> None:
+    np.save(tmp_path / "v.npy", np.tile([0.0, 2.0, 1.0], (5, 1)))
+    field = direction_field(model, str(tmp_path / "v.npy"), order=1)
+    np.testing.assert_allclose(vertex_directions(model.mesh, field), np.tile([0.0, 1.0, 0.0], (4, 1)), atol=1e-6)
+
+
+def test_a_wish_is_a_name_a_vector_or_a_file() -> None:
+    assert guide_file("smooth") is guide_file("curvature") is guide_file("0,-1,0.5") is None
+    assert guide_file("a.json") == guide_file("rbf:a.json") == Path("a.json")
 
 
 @pytest.mark.parametrize(
@@ -54,35 +71,40 @@ def test_an_array_has_one_row_a_vertex_of_the_file(tmp_path: Path, model: Model,
     [
         ({}, "give a list of arrows"),
         ([], "give a list of arrows"),
-        ([3], 'arrow 0 .*: give "point" or "vertex"'),
-        ([{"vertex": 1, "direction": [0, 1, 0]}, {"vertex": 1}], "arrow 1 .*: it has neither"),
-        ([{"vertex": 1, "point": [0, 0, 0], "scale": 1}], 'give "point" or "vertex"'),
+        ([3], "arrow 0 .*: it is not of the form"),
+        ([{"vertex": 1, "direction": [0, 1, 0]}, {"vertex": 1}], "arrow 1 .*asks for"),
+        ([{"vertex": 1, "point": [0, 0, 0], "scale": 1}], "give one of the two"),
         ([{"vertex": 9, "direction": [0, 1, 0]}], "no face has vertex 9; the last is 4"),
         ([{"vertex": 0, "direction": [0, 1, 0]}], "no face has vertex 0"),
-        ([{"vertex": 1, "direction": [0, 1]}], '"direction" is .*give 3 finite numbers'),
-        ([{"vertex": 1, "direction": [0, 1, "up"]}], "give 3 finite numbers"),
-        ([{"vertex": 1, "scale": -2}], "above 0, one is -2"),
+        ([{"vertex": True, "direction": [0, 1, 0]}], "no face has vertex True"),
+        ([{"vertex": 1, "direction": [0, 1]}], '"direction" is .*give 3 numbers'),
+        ([{"vertex": 1, "direction": [0, 1, "up"]}], "give 3 numbers"),
+        ([{"vertex": 1, "scale": [1, 2]}], "give 1 number"),
+        ([{"vertex": 1, "scale": -2}], "above 0"),
+        ([{"vertex": 1, "angle": 2}], '"angle" is unknown'),
+        ([{"vertex": 1, "direction": [0, 0, 1]}], "along the normal"),
         ([{"vertex": 1, "scale": 2}], "none of its 1 arrows gives a direction"),
     ],
 )
 def test_bad_arrows_are_named(tmp_path: Path, model: Model, arrows: object, message: str) -> None:
-    with pytest.raises(TexloomError, match=message):
-        read_guides(written(tmp_path, arrows), model, wanted="direction")
+    with pytest.raises(TexloomError, match=f"^arrows.json.*{message}"):
+        direction_field(model, str(written(tmp_path, arrows)), order=1)
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("1\n2", "2 rows for a mesh of 5"),
-        ("1 2\n" * 5, "has 1 column, this one has 2"),
-        ("1\nnan\n1\n1\n1", "row 1 .* not finite"),
+        ("1\n2", "2 rows, but faces use vertices up to 4"),
+        ("1 2\n" * 5, "2 numbers a row: give 1"),
+        ("1\nnan\n1\n1\n1", "not finite|above 0"),
+        ("1\n-1\n1\n1\n1", "above 0"),
     ],
 )
-def test_bad_arrays_are_named(tmp_path: Path, model: Model, text: str, message: str) -> None:
+def test_bad_rows_are_named(tmp_path: Path, model: Model, text: str, message: str) -> None:
     path = tmp_path / "scale.txt"
     path.write_text(text)
     with pytest.raises(FieldError, match=message):
-        read_guides(path, model, wanted="scale")
+        scale_field(model, path, "smooth")
 
 
 @pytest.mark.parametrize("name", ["missing.json", "missing.npy", "broken.json", "broken.npy", "broken.txt"])
@@ -90,4 +112,4 @@ def test_files_that_cannot_be_read_are_named(tmp_path: Path, model: Model, name:
     if name.startswith("broken"):
         (tmp_path / name).write_text("[1, 2")
     with pytest.raises(FileError, match=name):
-        read_guides(tmp_path / name, model, wanted="scale")
+        scale_field(model, tmp_path / name, "smooth")

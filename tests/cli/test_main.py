@@ -119,3 +119,40 @@ def test_parsing_imports_nothing_heavy() -> None:
     )
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert run.stdout.splitlines()[-1] == "[]"
+
+
+def test_an_image_grows_and_its_sources_apply_again(tmp_path: Path, capsys: Captured) -> None:
+    from texloom.demo import write_sample
+
+    write_sample(tmp_path / "weave", "weave", size=48)
+    grow = ["image", tmp_path / "weave", "-o", tmp_path / "grown", "--size", "64x40", "--sources", tmp_path / "s.npz"]
+    assert command.main([*map(str, grow), "--json", "--seed", "3"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["size"] == [64, 40] and facts["seed"] == 3 and len(facts["files"]) == 7
+    assert Image.open(tmp_path / "grown" / "basecolor.png").size == (64, 40)
+
+    again = ["apply", tmp_path / "s.npz", tmp_path / "weave", "-o", tmp_path / "again"]
+    assert command.main([str(word) for word in again]) == 0
+    for name in ("basecolor", "normal", "height"):
+        first, second = (np.asarray(Image.open(tmp_path / f / f"{name}.png")) for f in ("grown", "again"))
+        np.testing.assert_array_equal(first, second)
+
+
+def test_a_stack_does_not_fit_into_one_file(tmp_path: Path, capsys: Captured) -> None:
+    from texloom.demo import write_sample
+
+    write_sample(tmp_path / "weave", "weave", size=48)
+    message = fails_in_one_line(["image", tmp_path / "weave", "-o", tmp_path / "out.png"], capsys)
+    assert "out.png is one file, but there are 6 maps" in message
+    assert not (tmp_path / "out.png").exists()
+
+
+def test_sources_are_for_samples_of_one_size(sample: Path, tmp_path: Path, capsys: Captured) -> None:
+    from texloom.demo import write_sample
+
+    arguments = ["image", sample, "-o", tmp_path / "a.png", "--size", "16", "--sources", tmp_path / "s.npz"]
+    assert command.main([str(word) for word in arguments]) == 0
+    capsys.readouterr()
+    write_sample(tmp_path / "weave", "weave", size=48)
+    message = fails_in_one_line(["apply", tmp_path / "s.npz", tmp_path / "weave", "-o", tmp_path / "b"], capsys)
+    assert "made from a sample of 32x24 texels, but the stack is 48x48" in message

@@ -215,3 +215,11 @@ def test_seams_are_welded_and_coordinates_survive(tmp_path):
     assert len(model.mesh.vertices) == 4
     np.testing.assert_array_equal(model.corner_origin, mesh.faces)
     np.testing.assert_allclose(model.uv, (uv * [1, -1] + [0, 1])[mesh.faces], atol=1e-6)
+
+
+def test_a_matrix_is_stored_by_columns():
+    document = scene()
+    document.json["nodes"][1] = {"mesh": 0, "matrix": [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 7, 8, 9, 1]}
+    np.testing.assert_array_equal(primitives(document)[2].to_world @ [1, 0, 0, 1], [7, 9, 9, 1])
+    document.json["nodes"][1]["skin"] = 0  # a skinned mesh stands where its skin puts it, not its node
+    np.testing.assert_array_equal(primitives(document)[2].to_world, np.eye(4))

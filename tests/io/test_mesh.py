@@ -108,6 +108,20 @@ def test_files_that_are_nothing_are_refused_in_one_line(tmp_path, suffix, conten
         read_mesh(path)
 
 
+def test_an_index_too_wide_is_refused_not_wrapped(tmp_path):
+    (tmp_path / "wide.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 4294967298\n")
+    with pytest.raises(MeshError, match="wide.off: face 0 .* names vertex 4294967298"):
+        read_mesh(tmp_path / "wide.off")
+
+
+def test_signalling_nans_are_refused_quietly(tmp_path):
+    corners = np.zeros((1, 50), np.uint8)
+    corners[0, 12:16] = (1, 0, 160, 127)
+    (tmp_path / "nan.stl").write_bytes(bytes(80) + b"\1\0\0\0" + corners.tobytes())
+    with pytest.raises(MeshError, match="vertex 0 .* is at .nan"):
+        read_mesh(tmp_path / "nan.stl")
+
+
 @needs_data
 @pytest.mark.parametrize("name", BAD)
 def test_bad_files_are_mended_aloud_or_refused(name):

@@ -59,6 +59,13 @@ def test_binary_ply_of_uneven_polygons():
     np.testing.assert_array_equal(read_ply(header.encode() + body).faces, [[0, 1, 2], [0, 2, 3], [0, 3, 4]])
 
 
+def test_ply_with_coordinates_at_the_corners_of_faces():
+    header = "ply\nformat ascii 1.0\nelement vertex 4\n" + XYZ + "element face 1\n"
+    header += "property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
+    read = read_ply((header + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 8 0 0 0.5 0 0.5 0.25 0 0.25\n").encode())
+    np.testing.assert_array_equal(read.uv, [[[0, 0], [0.5, 0], [0.5, 0.25]], [[0, 0], [0.5, 0.25], [0, 0.25]]])
+
+
 @pytest.mark.parametrize(("cut", "said"), [(-5, "cut short"), (40, "cut short")])
 def test_binary_ply_cut_short_is_refused(cut, said):
     header = (HEADER.format("binary_little_endian 1.0", XYZ) + "end_header\n").encode()
@@ -66,6 +73,11 @@ def test_binary_ply_cut_short_is_refused(cut, said):
         read_ply(header + ply_body("<")[:cut])
     with pytest.raises(FileError, match="8 bytes more follow"):
         read_ply(header + ply_body("<") + b"leftover")
+
+
+def test_ply_of_a_negative_count_is_refused():
+    with pytest.raises(FileError, match="line 3 of the PLY header"):
+        read_ply(b"ply\nformat binary_little_endian 1.0\nelement vertex -5\nproperty float x\nend_header\n")
 
 
 def test_obj_with_every_way_to_name_a_corner():
@@ -78,6 +90,13 @@ def test_obj_with_every_way_to_name_a_corner():
     np.testing.assert_array_equal(read.uv[1], [[1, 0], [1, 1], [0, 1]])
     without = read_obj(text + b"f 1//1 2//1 4//1\n")
     assert without.uv is None and len(without.faces) == 3
+
+
+def test_obj_counts_back_from_where_the_face_stands():
+    text = b"v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf -3/-3 -2/-2 -1/-1\nv 5 5 5\nvt 5 5\n"
+    read = read_obj(text)
+    np.testing.assert_array_equal(read.faces, [[1, 2, 3]])
+    np.testing.assert_array_equal(read.uv, [[[0, 0], [1, 0], [0, 1]]])
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.meshes import all_meshes, flat_square, octahedron, slivers, sphere
+from tests.meshes import all_meshes, as_mesh, flat_square, octahedron, slivers, sphere
 from texloom.errors import MeshError
 from texloom.mesh.mesh import Mesh
 from texloom.mesh.refine import estimate_sites, refine
@@ -94,3 +94,9 @@ def test_a_length_beyond_reason_is_refused():
         refine(sphere(1), 1e-9)
     with pytest.raises(MeshError, match="a length of 0"):
         refine(sphere(1), 0.0)
+
+
+@pytest.mark.parametrize("corners", [[[0, 0, 0], [2, 0, 0], [0, 1, 0]], [[0, 1, 0], [2, 0, 0], [0, 0, 0]]])
+def test_the_rest_of_a_face_is_cut_along_its_shorter_diagonal(corners):
+    finer = refine(as_mesh(corners, [[0, 1, 2]]), 1.2)  # along the longer one, 1.41, more cuts would follow
+    assert len(finer.mesh.faces) == 3

@@ -53,7 +53,7 @@ def test_a_copy_off_by_rounding_still_counts_once_one_patch_is_known() -> None:
     result = np.clip(sample + off, 0, 1).astype(np.float32)
     seeds = (np.array([[4, 5]]), np.array([[4, 5]]))
     assert copy_side(sample, result, seeds=seeds) == pytest.approx(30.0)
-    assert copy_side(sample, np.clip(sample + 3 * off, 0, 1), seeds=seeds) == 0.0
+    assert copy_side(sample, np.clip(sample + 3 * off, 0, 1).astype(np.float32), seeds=seeds) == 0.0
 
 
 def test_a_wrong_seed_plants_nothing() -> None:

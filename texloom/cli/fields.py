@@ -5,77 +5,77 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float64
 
-from texloom.cli.guides import Guides, read_guides
-from texloom.errors import ParameterError
+from texloom.cli.guides import holds_arrows, read_arrows, read_rows
+from texloom.errors import FieldError, ParameterError
+from texloom.field import rbf
+from texloom.field.arrows import Placed, place
+from texloom.field.curvature import along_curvature
 from texloom.field.direction import DirectionField, from_constant, from_vectors
+from texloom.field.scale import checked, from_arrows
 from texloom.field.smooth import smoothest, through_arrows
 from texloom.mesh.model import Model
 
 _NAMES = ("smooth", "curvature")
+_MANY_ARROWS = 100  # beyond, a scale field of two solves an arrow takes too long
+_RBF = "rbf:"
 
 
 def direction_field(model: Model, wish: str, *, order: int) -> DirectionField:
-    """The field that ``--direction`` asks for: a name, a vector x,y,z, a file, or ``rbf:`` and a file."""
+    """The field that ``--direction`` asks for: a name, a vector x,y,z, a file, or ``rbf:`` and a file of arrows."""
     mesh = model.mesh
     if wish == "smooth":
         return smoothest(mesh, order)
     if wish == "curvature":
-        from texloom.field.curvature import along_curvature
-
         return along_curvature(mesh, order)
-    vector = _vector(wish)
-    if vector is not None:
-        return from_constant(mesh, order, vector)
     path = guide_file(wish)
-    assert path is not None
-    guides = read_guides(path, model, wanted="direction")
-    vertices, directions = guides.directed()
-    if wish.startswith("rbf:"):
-        from texloom.field.rbf import through_arrows_rbf
-
-        return through_arrows_rbf(mesh, order, vertices=vertices, directions=directions)
-    if _is_everywhere(guides, model):
-        vectors = np.zeros_like(mesh.vertices)
-        vectors[vertices] = directions
-        return from_vectors(mesh, order, vectors)
-    return through_arrows(mesh, order, vertices=vertices, directions=directions)
+    if path is None:
+        return from_constant(mesh, order, np.array(vector(wish)))
+    if not holds_arrows(path):
+        return from_vectors(mesh, order, read_rows(path, model, columns=3))
+    placed = _placed(path, model)
+    if not len(placed.direction):
+        raise FieldError(f"{path.name}: none of its {len(placed.scale)} arrows gives a direction")
+    through = rbf.directions if wish.startswith(_RBF) else through_arrows
+    return through(mesh, order, vertices=placed.direction_vertex, directions=placed.direction)
 
 
 def scale_field(model: Model, path: Path | None, direction: str) -> Float64[np.ndarray, "vertex"] | None:
     """The scale at every vertex: from ``--scale``, else from the arrows of ``--direction``, else None (all 1)."""
-    arrows = guide_file(direction)
-    if path is not None:
-        vertices, scales = read_guides(path, model, wanted="scale").scaled()
-    elif arrows is not None and arrows.suffix.lower() == ".json":
-        vertices, scales = read_guides(arrows, model, wanted="direction").scaled()
-    else:
+    mesh = model.mesh
+    if path is not None and not holds_arrows(path):
+        return checked(mesh, read_rows(path, model, columns=1)[:, 0])
+    file = path or guide_file(direction)
+    if file is None or not holds_arrows(file):
         return None
-    if not len(vertices):
+    placed = _placed(file, model)
+    if not len(placed.scale):
+        if path is not None:
+            raise FieldError(f"{path.name}: none of its {len(placed.direction)} arrows gives a scale")
         return None
-    from texloom.field.scale import interpolate_scale
-
-    return interpolate_scale(model.mesh, vertices=vertices, scales=scales)
+    if direction.startswith(_RBF):
+        return rbf.scales(mesh, vertices=placed.scale_vertex, scales=placed.scale)
+    smoothness = "biharmonic" if len(placed.scale) <= _MANY_ARROWS else "harmonic"
+    return from_arrows(mesh, vertices=placed.scale_vertex, scales=placed.scale, smoothness=smoothness)
 
 
 def guide_file(wish: str) -> Path | None:
-    """The file a wish for a direction names, if it names one."""
-    if wish in _NAMES or _vector(wish) is not None:
-        return None
-    return Path(wish.removeprefix("rbf:"))
+    """The file that a wish for a direction names, if it names one."""
+    return None if wish in _NAMES or vector(wish) is not None else Path(wish.removeprefix(_RBF))
 
 
-def _vector(wish: str) -> Float64[np.ndarray, "3"] | None:
-    """Three numbers, if that is what the text is."""
-    parts = wish.split(",")
+def vector(wish: str) -> tuple[float, ...] | None:
+    """The numbers of x,y,z; None where the text is something else."""
     try:
-        numbers = [float(part) for part in parts]
+        numbers = tuple(float(part) for part in wish.split(","))
     except ValueError:
         return None
     if len(numbers) != 3:
-        raise ParameterError(f"--direction {wish}: a vector has 3 numbers, x,y,z, these are {len(numbers)}")
-    return np.array(numbers)
+        raise ParameterError(f"--direction {wish}: a vector has 3 numbers, x,y,z; these are {len(numbers)}")
+    return numbers
 
 
-def _is_everywhere(guides: Guides, model: Model) -> bool:
-    """Whether every vertex has a direction, as an array gives it."""
-    return len(np.unique(guides.directed()[0])) == len(model.mesh.vertices)
+def _placed(path: Path, model: Model) -> Placed:
+    try:
+        return place(model.mesh, read_arrows(path, model))
+    except FieldError as error:
+        raise FieldError(f"{path.name}: {str(error).removeprefix(f'{path.name}: ')}") from None

@@ -1,8 +1,6 @@
-"""Direction and scale files: JSON arrows or one row a vertex, read and brought onto the vertices of the mended mesh."""
+"""Direction and scale files: JSON arrows, or one row a vertex, brought onto the vertices of the mended mesh."""
 
 import json
-import math
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,45 +8,56 @@ import numpy as np
 from jaxtyping import Float64, Int64
 
 from texloom.errors import FieldError, FileError
+from texloom.field.arrows import Arrow
 from texloom.mesh.model import Model
 
-_KEYS = {"point", "vertex", "direction", "scale"}
+_KEYS = {"point": 3, "vertex": 0, "direction": 3, "scale": 1}  # how many numbers each takes
 
 
-@dataclass(frozen=True, eq=False)
-class Guides:
-    """What the user wants at some vertices; NaN where an arrow leaves the direction or the scale open."""
-
-    vertex: Int64[np.ndarray, "guide"]
-    direction: Float64[np.ndarray, "guide 3"]
-    scale: Float64[np.ndarray, "guide"]
-
-    def directed(self) -> tuple[Int64[np.ndarray, "n"], Float64[np.ndarray, "n 3"]]:
-        """Vertices with a direction, and these."""
-        given = np.isfinite(self.direction[:, 0])
-        return self.vertex[given], self.direction[given]
-
-    def scaled(self) -> tuple[Int64[np.ndarray, "n"], Float64[np.ndarray, "n"]]:
-        """Vertices with a scale, and these."""
-        given = np.isfinite(self.scale)
-        return self.vertex[given], self.scale[given]
+def holds_arrows(path: Path) -> bool:
+    """Whether a file is one of arrows rather than of rows."""
+    return path.suffix.lower() == ".json"
 
 
-def read_guides(path: Path, model: Model, *, wanted: str) -> Guides:
-    """The guides of a file. ``wanted`` is "direction" or "scale": what at least one of them must give.
+def read_arrows(path: Path, model: Model) -> list[Arrow]:
+    """The arrows of a JSON file; their vertices, counted as in the mesh's file, become those of the mended mesh.
+
+    Raises: FileError, if it cannot be read; FieldError, naming the arrow that is wrong.
+    """
+    vertex_of = dict(zip(*(part.tolist() for part in _origins(model)), strict=True))
+    arrows = []
+    for number, entry in enumerate(_load_json(path)):
+        try:
+            arrows.append(_arrow(entry, vertex_of))
+        except FieldError as error:
+            raise FieldError(f"{path.name}: arrow {number} (counted from 0): {error}") from None
+    return arrows
+
+
+def read_rows(path: Path, model: Model, *, columns: int) -> Float64[np.ndarray, "vertex columns"]:
+    """Numbers for every vertex of the mended mesh, from a file with one row for each vertex of the mesh's file.
 
     Raises: FileError, if it cannot be read; FieldError, if it does not fit the mesh.
     """
-    try:
-        if path.suffix.lower() == ".json":
-            guides = _from_arrows(_load_json(path), model)
-        else:
-            guides = _from_rows(_load_rows(path), model, wanted)
-    except FieldError as error:
-        raise FieldError(f"{path.name}: {error}") from None
-    if not len((guides.directed() if wanted == "direction" else guides.scaled())[0]):
-        raise FieldError(f"{path.name}: none of its {len(guides.vertex)} arrows gives a {wanted}")
-    return guides
+    rows = _load_rows(path)
+    origin, vertex = _origins(model)
+    if rows.shape[1] != columns:
+        raise FieldError(f"{path.name} has {rows.shape[1]} numbers a row: give {columns} for each vertex")
+    if len(rows) <= origin.max():
+        raise FieldError(
+            f"{path.name} has {len(rows)} rows, but faces use vertices up to {origin.max()} (counted from 0): "
+            "give one row for each vertex"
+        )
+    values = np.empty((len(model.mesh.vertices), columns))
+    values[vertex] = rows[origin]
+    return values
+
+
+def _origins(model: Model) -> tuple[Int64[np.ndarray, "pair"], Int64[np.ndarray, "pair"]]:
+    """Vertices of the file and the vertices of the mended mesh they became, each pair once."""
+    pairs = np.stack([model.corner_origin.ravel(), model.mesh.faces.ravel()], axis=1).astype(np.int64)
+    origin, vertex = np.unique(pairs, axis=0).T
+    return origin, vertex
 
 
 def _load_json(path: Path) -> list[Any]:
@@ -66,85 +75,42 @@ def _load_json(path: Path) -> list[Any]:
 
 
 def _load_rows(path: Path) -> Float64[np.ndarray, "row column"]:
-    """A per-vertex array: .npy, or text."""
+    """A table of numbers: .npy, or text with blanks or commas between."""
     try:
         if path.suffix.lower() == ".npy":
-            rows = np.load(path, allow_pickle=False)
+            rows = np.asarray(np.load(path, allow_pickle=False), np.float64)
         else:
             text = path.read_text(encoding="utf-8").replace(",", " ")
             rows = np.array([[float(word) for word in line.split()] for line in text.splitlines() if line.strip()])
-        rows = np.asarray(rows, np.float64)
+        return rows.reshape(len(rows), -1)
     except FileNotFoundError:
         raise FileError(f"{path}: no such file") from None
     except OSError as error:
         raise FileError(f"{path.name} cannot be read: {error.strerror or error}") from None
     except (ValueError, TypeError, EOFError):
-        raise FileError(f"{path.name} is not an array of numbers: give .json arrows, .npy, or rows of text") from None
-    return rows.reshape(len(rows), -1) if rows.ndim else rows.reshape(1, 1)
+        raise FileError(f"{path.name} is not a table of numbers: give .json arrows, .npy, or rows of text") from None
 
 
-def _from_rows(rows: Float64[np.ndarray, "row column"], model: Model, wanted: str) -> Guides:
-    """One row a vertex of the file (or of the mended mesh)."""
-    columns = 3 if wanted == "direction" else 1
-    if rows.shape[1] != columns:
-        raise FieldError(f"a {wanted} array has {columns} column{'s'[: columns - 1]}, this one has {rows.shape[1]}")
-    count = int(model.corner_origin.max()) + 1
-    if len(rows) < count:
-        raise FieldError(f"{len(rows)} rows for a mesh of {count} vertices or more: give one row a vertex")
-    if not np.isfinite(rows).all():
-        raise FieldError(f"row {int(np.argmin(np.isfinite(rows).all(axis=1)))} (counted from 0) is not finite")
-    vertex, origin = _vertex_of(model)
-    values = rows[origin]
-    nothing = np.full(len(vertex), np.nan)
-    if wanted == "direction":
-        return Guides(vertex, values, nothing)
-    return Guides(vertex, np.full((len(vertex), 3), np.nan), _positive(values[:, 0]))
+def _arrow(entry: Any, vertex_of: dict[int, int]) -> Arrow:
+    """One arrow as it was written."""
+    if not isinstance(entry, dict):
+        raise FieldError('it is not of the form {"point": [x, y, z], "direction": [x, y, z], "scale": s}')
+    unknown = sorted(set(entry) - set(_KEYS))
+    if unknown:
+        raise FieldError(f'"{unknown[0]}" is unknown: use point, vertex, direction and scale')
+    given: dict[str, Any] = {name: _numbers(name, value) for name, value in entry.items() if name != "vertex"}
+    if "vertex" in entry:
+        vertex = entry["vertex"]
+        if type(vertex) is not int or vertex not in vertex_of:
+            raise FieldError(f"no face has vertex {vertex!r}; the last is {max(vertex_of)} (counted from 0)")
+        given["vertex"] = vertex_of[vertex]
+    return Arrow(**given)
 
 
-def _from_arrows(arrows: list[Any], model: Model) -> Guides:
-    places, directions, scales = [], [], []
-    known = _vertex_of(model)
-    for number, arrow in enumerate(arrows):
-        try:
-            places.append(_place(arrow, model, known))
-            directions.append(_numbers(arrow.get("direction", [math.nan] * 3), 3, "direction"))
-            scales.append(_numbers([arrow.get("scale", math.nan)], 1, "scale")[0])
-        except FieldError as error:
-            raise FieldError(f"arrow {number} (counted from 0): {error}") from None
-    return Guides(np.array(places, np.int64), np.array(directions), _positive(np.array(scales)))
-
-
-def _place(arrow: Any, model: Model, known: tuple[Int64[np.ndarray, "n"], Int64[np.ndarray, "n"]]) -> int:
-    """The vertex of the mesh an arrow stands at."""
-    if not isinstance(arrow, dict) or not set(arrow) <= _KEYS or ("point" in arrow) == ("vertex" in arrow):
-        raise FieldError('give "point" or "vertex", and "direction", "scale" or both')
-    if "direction" not in arrow and "scale" not in arrow:
-        raise FieldError('it has neither "direction" nor "scale"')
-    if "point" in arrow:
-        point = np.array(_numbers(arrow["point"], 3, "point"))
-        return int(np.argmin(((model.mesh.vertices - point) ** 2).sum(axis=1)))
-    vertex, origin = known
-    found = np.flatnonzero(origin == arrow["vertex"]) if isinstance(arrow["vertex"], int) else []
-    if not len(found):
-        raise FieldError(f"no face has vertex {arrow['vertex']!r}; the last is {origin.max()} (counted from 0)")
-    return int(vertex[found[0]])
-
-
-def _vertex_of(model: Model) -> tuple[Int64[np.ndarray, "vertex"], Int64[np.ndarray, "vertex"]]:
-    """Vertices of the mended mesh and those of the file they came from, each pair once."""
-    pairs = np.stack([model.corner_origin.ravel(), model.mesh.faces.ravel()], axis=1).astype(np.int64)
-    origin, vertex = np.unique(pairs, axis=0).T
-    return vertex, origin
-
-
-def _numbers(value: Any, count: int, name: str) -> list[float]:
-    plain = isinstance(value, list) and all(isinstance(x, (int, float)) and not isinstance(x, bool) for x in value)
-    if not plain or len(value) != count or any(math.isinf(x) for x in value):
-        raise FieldError(f'"{name}" is {json.dumps(value)[:60]}: give {count} finite number{"s"[: count - 1]}')
-    return [float(x) for x in value]
-
-
-def _positive(scale: Float64[np.ndarray, "guide"]) -> Float64[np.ndarray, "guide"]:
-    if (scale <= 0).any():
-        raise FieldError(f"scales must be above 0, one is {np.nanmin(scale):g}")
-    return scale
+def _numbers(name: str, value: Any) -> tuple[float, ...] | float:
+    """The numbers of a key: three, or one."""
+    count = _KEYS[name]
+    numbers = value if isinstance(value, list) else [value]
+    if len(numbers) != count or any(isinstance(x, bool) or not isinstance(x, (int, float)) for x in numbers):
+        raise FieldError(f'"{name}" is {json.dumps(value)[:60]}: give {count} number{"s" if count > 1 else ""}')
+    return float(numbers[0]) if count == 1 else tuple(float(x) for x in numbers)

@@ -13,8 +13,12 @@ from texloom.field.trace import Flow, Samples, follow, spokes, starts
 from texloom.kernels.launch import launch
 from texloom.kernels.trace import meet_half_way
 
-FARTHEST = 1.5
-"""Texels between the ends of the two paths to a sample, beyond which it is dropped."""
+APART_AT_LEAST, APART_PER_TEXEL = 1.5, 0.2
+"""Texels the two paths to a sample may end apart: always, and more for each texel of their shorter leg.
+
+Where a field of curvature k turns, legs of u and v texels end k u v apart and half way between them samples spread or
+crowd by k u / 2 and k v / 2: a tenth of a texel when the second term is spent. Past both, patches would fold.
+"""
 
 
 def lay_patches(
@@ -54,7 +58,8 @@ def trace_network(flow: Flow, centres: Int32[np.ndarray, "patch"], width: int) -
         meet_half_way,
         len(samples.face),
         inputs=[
-            *(flow.record, flow.twin, flow.order, flow.position, flow.faces, wp.vec3(*flow.period), FARTHEST),
+            *(flow.record, flow.twin, flow.order, flow.position, flow.faces, wp.vec3(*flow.period)),
+            *(width, APART_AT_LEAST, APART_PER_TEXEL),
             *(other.face, other.place, other.heading),
         ],
         outputs=[samples.face, samples.place, samples.heading],

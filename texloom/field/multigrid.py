@@ -33,7 +33,7 @@ class Multigrid:
 
     def __init__(self, matrix: "csr_array") -> None:
         self.matrix = matrix
-        self._diagonal: Float64[np.ndarray, "n"] = np.real(matrix.diagonal())
+        self._diagonal: np.ndarray = np.real(matrix.diagonal())
         self._prolongation: csr_array | None = None
         if len(self._diagonal) > _DIRECT:
             prolongation, lumps = _prolongation(matrix, self._diagonal)
@@ -94,6 +94,18 @@ class Multigrid:
             right = mass * vector
             vector = _normalized(self.solve(right, start=vector / energy, tolerance=1e-3), mass, part)
         return vector
+
+
+def principal_block(matrix: "csr_array", where: Bool[np.ndarray, "n"]) -> "csr_array":
+    """The rows and columns of the marked unknowns."""
+    return matrix if where.all() else matrix[where][:, where].tocsr()
+
+
+def plus_diagonal(matrix: "csr_array", diagonal: Float64[np.ndarray, "n"]) -> "csr_array":
+    """The matrix with numbers added to its diagonal."""
+    from scipy.sparse import csr_array, diags_array
+
+    return csr_array(matrix + diags_array(diagonal, format="csr"))
 
 
 def one_thread() -> AbstractContextManager[object]:
@@ -187,13 +199,15 @@ def _lumps(graph: "csr_array", root: Bool[np.ndarray, "n"]) -> tuple[np.ndarray,
     turn = root.astype(complex)
     columns, rows = _entries(graph)
     strength = np.abs(graph.data)
-    for _ in range(2):
+    for _joining in range(2):
         joinable = np.flatnonzero((lump[rows] < 0) & (lump[columns] >= 0))
         best = joinable[np.lexsort((strength[joinable], rows[joinable]))]
         last = np.append(rows[best][1:] != rows[best][:-1], True)[: len(best)]
         best = best[last]
         lump[rows[best]] = lump[columns[best]]
-        turn[rows[best]] = -graph.data[best] / strength[best] * turn[columns[best]]
+        turn[rows[best]] = np.negative(graph.data[best]) / strength[best] * turn[columns[best]]
+    alone = np.flatnonzero(lump < 0)  # couplings that rounding left strong one way only
+    lump[alone], turn[alone] = np.count_nonzero(root) + np.arange(len(alone)), 1.0
     return lump, turn
 
 

@@ -14,7 +14,7 @@ from texloom.errors import FieldError
 from texloom.field.direction import DirectionField, check_order
 from texloom.field.frames import VertexFrames
 from texloom.field.laplacian import connection_laplacian
-from texloom.field.multigrid import Multigrid
+from texloom.field.multigrid import Multigrid, plus_diagonal, principal_block
 from texloom.mesh.mesh import Mesh
 
 _TOLERANCE = 1e-10  # of the right-hand side; far from its arrows a field fades by many powers of ten
@@ -45,11 +45,11 @@ def near(
     nothing is known. A part that knows nothing gets its smoothest field.
     """
     solver = SmoothSolver(mesh, order)
-    known = np.bincount(solver.part, weights=weight > 0)[solver.part] > 0
+    known = np.bincount(mesh.vertex_parts, weights=weight > 0)[mesh.vertex_parts] > 0
     value = np.empty(len(power), complex)
     if known.any():
         pull = (mesh.vertex_areas * weight)[known]
-        system = Multigrid(_plus_diagonal(_rows_and_columns(solver.laplacian, known), pull))
+        system = Multigrid(plus_diagonal(principal_block(solver.laplacian, known), pull))
         value[known] = system.solve(pull * power[known], start=power[known], tolerance=_TOLERANCE)
     value[~known] = solver.automatic(~known)
     return solver.frames.field(value)
@@ -69,11 +69,11 @@ class SmoothSolver:
         self.laplacian = connection_laplacian(self.frames.transport, order)
         self._fixed = np.zeros(len(mesh.vertices), bool)
         self._fixed[self.vertices] = True
-        in_pinned_part = np.isin(self.part, self.part[self.vertices])
+        in_pinned_part = np.isin(mesh.vertex_parts, mesh.vertex_parts[self.vertices])
         self._free = in_pinned_part & ~self._fixed
         self._unpinned = ~in_pinned_part
         if self._free.any():
-            self._system = Multigrid(_rows_and_columns(self.laplacian, self._free))
+            self._system = Multigrid(principal_block(self.laplacian, self._free))
 
     def solve(self, directions: Float[np.ndarray, "arrow 3"]) -> DirectionField:
         """The field through these tangent vectors, one for each vertex the solver was set up with.
@@ -88,20 +88,14 @@ class SmoothSolver:
             value[self._unpinned] = self._smoothest_of_unpinned
         return self.frames.field(value)
 
-    @cached_property
-    def part(self) -> Int[np.ndarray, "vertex"]:
-        """Number of the connected part each vertex is in."""
-        from scipy.sparse.csgraph import connected_components
-
-        return connected_components(abs(self.laplacian), directed=False)[1]
-
     def automatic(self, where: np.ndarray) -> Complex128[np.ndarray, "where"]:
         """Powers of the smoothest field of whole parts: those of the vertices marked by ``where``."""
         if not where.any():
             return np.empty(0, complex)
-        mass, part = _safe_areas(self.frames.mesh)[where], np.unique(self.part[where], return_inverse=True)[1]
+        mass = _safe_areas(self.frames.mesh)[where]
+        part = np.unique(self.frames.mesh.vertex_parts[where], return_inverse=True)[1]
         area = np.bincount(part, weights=mass)[part]
-        shifted = _plus_diagonal(_rows_and_columns(self.laplacian, where), _SHIFT * mass / area)
+        shifted = plus_diagonal(principal_block(self.laplacian, where), _SHIFT * mass / area)
         target = self.frames.upright_power[where]
         value = Multigrid(shifted).smallest(mass, part, target)
         # Every turn of the whole is as smooth: take the one nearest to upright
@@ -130,14 +124,3 @@ def _safe_areas(mesh: Mesh) -> Float64[np.ndarray, "vertex"]:
     """Vertex areas, none of them 0."""
     areas = mesh.vertex_areas
     return np.maximum(areas, 1e-12 * max(areas.mean(), 1e-300))
-
-
-def _rows_and_columns(matrix, where: np.ndarray):
-    """The block of a sparse matrix at the marked unknowns."""
-    return matrix if where.all() else matrix[where][:, where].tocsr()
-
-
-def _plus_diagonal(matrix, diagonal: Float64[np.ndarray, "n"]):
-    from scipy.sparse import csr_array, diags_array
-
-    return csr_array(matrix + diags_array(diagonal, format="csr"))

@@ -163,7 +163,7 @@ def _pack(
 
 def _pairs(numbers: Complex[np.ndarray, "face 3"]) -> Float[np.ndarray, "face 6"]:
     """Complex numbers as (re, im)."""
-    return np.stack([numbers.real, numbers.imag], axis=2).reshape(-1, 6)
+    return np.stack([np.real(numbers), np.imag(numbers)], axis=2).reshape(-1, 6)
 
 
 def _lattice_twins(rows: int, columns: int, *, wrap: bool) -> Int32[np.ndarray, "face 3"]:

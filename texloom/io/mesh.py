@@ -33,7 +33,8 @@ def read_mesh(path: str | Path, *, material: str | None = None) -> Model:
     """
     path = Path(path)
     try:
-        read = _read(path)
+        with np.errstate(invalid="ignore"):  # not-a-numbers are refused below, by name
+            read = _read(path)
         chosen = _under_material(read, material)
         mended = mend(read.vertices, read.faces[chosen])
     except (FileError, MeshError) as error:

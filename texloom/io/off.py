@@ -33,7 +33,7 @@ def read_off(content: bytes) -> Triangles:
     vertices = _positions(rows[1 : 1 + vertex_count])
     counts, corners = _polygons(rows[1 + vertex_count : 1 + vertex_count + face_count])
     triangles, _ = fan(counts)
-    return Triangles(vertices, corners[triangles].astype(np.int32))
+    return Triangles(vertices, corners[triangles])
 
 
 def _positions(rows: list[tuple[int, list[bytes]]]) -> np.ndarray:

@@ -46,7 +46,7 @@ def read_ply(content: bytes) -> Triangles:
         row = int(np.argmax(counts < 3))
         raise FileError(f"face {row} (counted from 0) has {int(counts[row])} vertices: three or more are needed")
     triangles, _ = fan(counts)
-    faces = corners[triangles].astype(np.int32)
+    faces = corners[triangles].astype(np.int64)
     return Triangles(vertices, faces, _uv(vertex, face, faces, triangles, counts))
 
 
@@ -79,6 +79,8 @@ def _header(content: bytes) -> tuple[str | None, list[_Element], bytes, int]:
                 order = {"ascii": None, "binary_little_endian": "<", "binary_big_endian": ">"}[words[1]]
             elif words[:1] == ["element"]:
                 elements.append(_Element(words[1], int(words[2])))
+                if elements[-1].count < 0:
+                    raise ValueError
             elif words[:2] == ["property", "list"]:
                 elements[-1].lists[words[4]] = _KINDS[words[2]]
                 elements[-1].kinds[words[4]] = _KINDS[words[3]]
@@ -132,11 +134,7 @@ def _text_table(element: _Element, rows: list[list[bytes]], line: int) -> dict[s
 def _strung(values: list[list[float]], is_list: bool) -> np.ndarray | _Column:
     """A column of single values, or of lists."""
     flat = np.array([value for row in values for value in row], np.float64)
-    return (
-        (np.array([len(row) for row in values], np.int64), flat.astype(np.int64) if is_list else flat)[:2]
-        if is_list
-        else flat
-    )
+    return (np.array([len(row) for row in values], np.int64), flat) if is_list else flat
 
 
 def _binary_tables(elements: list[_Element], body: bytes, order: str) -> dict[str, dict[str, Any]]:

@@ -11,7 +11,7 @@ class Triangles:
     """The triangles of a file, before anything is mended."""
 
     vertices: Float64[np.ndarray, "vertex 3"]
-    faces: Int32[np.ndarray, "face 3"]
+    faces: Int[np.ndarray, "face 3"]  # as wide as the file has them: not checked yet
     uv: Float32[np.ndarray, "face 3 2"] | None = None  # v up
     material: Int32[np.ndarray, "face"] | None = None  # row of ``materials``, -1 for none
     materials: tuple[str, ...] = ()

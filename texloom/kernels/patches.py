@@ -230,6 +230,7 @@ def paste_blocks(
     entry_turn: wp.array(dtype=float),  # one element where no patch is turned
     chosen: wp.array(dtype=int),
     anchors: wp.array2d(dtype=int),
+    scale: float,  # texels of the exemplar per sample
     width: int,
     place: wp.array2d(dtype=int),  # (sample, 2): perimeter index and depth of each sample
     seam: wp.array2d(dtype=int),
@@ -259,7 +260,7 @@ def paste_blocks(
         label[site] = chosen[p]
         if entry_turn.shape[0] > 1:
             turn[site] = entry_turn[e]
-        position[site, 0] = float(anchors[p, 0]) + row
-        position[site, 1] = float(anchors[p, 1]) + column
+        position[site, 0] = float(anchors[p, 0]) + scale * row
+        position[site, 1] = float(anchors[p, 1]) + scale * column
         for ch in range(exemplar.shape[2]):
             colour[site, ch] = sample_exemplar(exemplar, position[site, 0], position[site, 1], ch)

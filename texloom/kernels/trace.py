@@ -257,7 +257,9 @@ def meet_half_way(
     position: wp.array(dtype=wp.vec3),
     faces: wp.array2d(dtype=int),
     period: wp.vec3,
-    farthest: float,  # texels two paths may end apart
+    width: int,
+    apart_at_least: float,  # texels two paths may always end apart,
+    apart_per_texel: float,  # and for each texel of their shorter leg
     other_face: wp.array(dtype=int),
     other_place: wp.array(dtype=wp.vec3),
     other_heading: wp.array(dtype=wp.vec2),
@@ -300,6 +302,9 @@ def meet_half_way(
         point(position, faces, g, other_place[s], period) - point(position, faces, f, place[s], period), period
     )
     distance = wp.length(apart)
+    row = wp.abs((s // width) % width - width // 2)
+    column = wp.abs(s % width - width // 2)
+    farthest = apart_at_least + apart_per_texel * float(wp.min(row, column))
     agree = wp.dot(there, here[0] * x + here[1] * y)
     if distance > farthest * texel_at(record, f, place[s]) or cosine < -0.5 or agree < 0.5:
         face[s] = -1

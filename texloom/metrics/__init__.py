@@ -3,5 +3,15 @@
 from texloom.metrics.copying import copy_side, copy_side_of_sources
 from texloom.metrics.score import Scores, score
 from texloom.metrics.seam import seam_ratio
+from texloom.metrics.surface import SurfaceScores, chart_seam_ratio, score_surface
 
-__all__ = ["Scores", "copy_side", "copy_side_of_sources", "score", "seam_ratio"]
+__all__ = [
+    "Scores",
+    "SurfaceScores",
+    "chart_seam_ratio",
+    "copy_side",
+    "copy_side_of_sources",
+    "score",
+    "score_surface",
+    "seam_ratio",
+]

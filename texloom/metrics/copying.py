@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Int, UInt8, UInt64
 
 from texloom.arrays import Image
-from texloom.metrics.patches import SIDE
+from texloom.metrics.patches import SIDE, Picture
 from texloom.sources import SourceMap
 
 _TOLERANCE = 1  # of 255: what rounding through linear light may change
@@ -18,7 +18,7 @@ Offsets = Int[np.ndarray, "row column 2"]
 
 def copy_side(
     sample: Image,
-    result: Image,
+    result: Picture,
     seeds: tuple[Int[np.ndarray, "seed 2"], Int[np.ndarray, "seed 2"]] | None = None,
 ) -> float:
     """Side in texels of the typical exactly copied piece: √(area-weighted mean area of regions) + 6, or 0 without any.
@@ -41,7 +41,7 @@ def copy_side_of_sources(sources: SourceMap, shape: tuple[int, int]) -> float:
 
     Only texels with a single upright source count; blends are not copies.
     """
-    place = np.stack(np.indices(shape), axis=-1)
+    place = np.moveaxis(np.indices(shape), 0, -1)
     offsets = np.rint(sources.position[:, 0]).astype(np.int64).reshape(*shape, 2) - place
     alone = sources.weight[:, 0] > 254.5 / 255.0
     if sources.turn is not None:
@@ -56,7 +56,7 @@ def _bytes(image: Image) -> UInt8[np.ndarray, "row column channel"]:
     return np.rint(np.clip(image, 0.0, 1.0) * 255.0).astype(np.uint8)
 
 
-def _hashes(image: UInt8[np.ndarray, "row column channel"]) -> UInt64[np.ndarray, "row column"]:
+def _hashes(image: UInt8[np.ndarray, "row column channel"]) -> UInt64[np.ndarray, "row2 column2"]:
     """One 64-bit polynomial hash of every whole patch; equal patches, and practically only those, have equal hashes."""
     row, column, channel = (np.uint64(odd) for odd in (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9))
     value = np.zeros(image.shape[:2], np.uint64)
@@ -81,10 +81,10 @@ def _equal_patches(ours: np.ndarray, theirs: np.ndarray) -> Offsets:
     first = np.searchsorted(ordered, wanted.ravel())
     count = np.searchsorted(ordered, wanted.ravel(), side="right") - first
     index = order[np.minimum(first, len(order) - 1)]
-    place = np.indices(wanted.shape).reshape(2, -1).T
-    offsets = np.column_stack(np.unravel_index(index, known.shape)) - place
+    place = np.indices(wanted.shape)
     ambiguous = (count > 1).reshape(wanted.shape)
-    offsets = offsets.reshape(*wanted.shape, 2)
+    match = np.stack(np.unravel_index(index, known.shape)).reshape(place.shape)
+    offsets = np.moveaxis(match - place, 0, -1)
     found = np.where((count == 1).reshape(wanted.shape)[..., None], offsets, _NOWHERE)
     _grow(found, ours, theirs, within=ambiguous)
     # What touches nothing decided is decided at one patch a piece, and grown from there.
@@ -93,7 +93,7 @@ def _equal_patches(ours: np.ndarray, theirs: np.ndarray) -> Offsets:
         if not left.any():
             break
         pieces = _regions(left, left[:, 1:] & left[:, :-1], left[1:] & left[:-1])
-        row, column = np.unravel_index(np.flatnonzero(left)[np.unique(pieces, return_index=True)[1]], left.shape)
+        row, column = np.argwhere(left)[np.unique(pieces, return_index=True)[1]].T
         found[row, column] = offsets[row, column]
         _grow(found, ours, theirs, within=ambiguous)
     left = ambiguous & (found[..., 0] == _NOWHERE)
@@ -114,13 +114,13 @@ def _grow(
 ) -> None:
     """Carry offsets to neighbouring patches as long as these are copies too; the first to arrive stays."""
     last = np.array(theirs.shape[:2]) - SIDE
-    front = np.argwhere(offsets[..., 0] != _NOWHERE)
+    front: np.ndarray = np.argwhere(offsets[..., 0] != _NOWHERE)
     while len(front):
         reached = []
         for step in _STEPS:
             offset = offsets[front[:, 0], front[:, 1]]
-            place = front + step
-            match = place + offset
+            place: np.ndarray = front + step
+            match: np.ndarray = place + offset
             inside = ((place >= 0) & (place < offsets.shape[:2]) & (match >= 0) & (match <= last)).all(1)
             place, match, offset = place[inside], match[inside], offset[inside]
             free = offsets[place[:, 0], place[:, 1], 0] == _NOWHERE

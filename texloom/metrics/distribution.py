@@ -7,15 +7,15 @@ from jaxtyping import Float32
 
 from texloom.arrays import Image
 from texloom.exemplar.blas import over_blocks
-from texloom.metrics.patches import SIDE, patch_vectors
+from texloom.metrics.patches import SIDE, Picture, patch_vectors
 
 _PROJECTIONS = 128
 _QUANTILES = 1024
-_LEVELS = 3
+LEVELS = 3
 _BLOCK = 32  # projections at a time
 
 
-def sliced_wasserstein(sample: Image, result: Image) -> float:
+def sliced_wasserstein(sample: Image, result: Picture) -> float:
     """100 × the mean one-dimensional Wasserstein distance of 7×7 patches over fixed projections and pyramid levels.
 
     Values are encoded, in [0, 1]. Each level projects all whole patches of both pictures on 128 fixed unit vectors and
@@ -23,21 +23,22 @@ def sliced_wasserstein(sample: Image, result: Image) -> float:
     count alike. A level too small for one patch is left out.
     """
     distances = []
-    for _ in range(_LEVELS):
-        distances.append(_projected_distance(patch_vectors(sample), patch_vectors(result)))
+    for _ in range(LEVELS):
+        distances.append(projected_wasserstein(patch_vectors(sample), patch_vectors(result)))
         sample, result = halve(sample), halve(result)
         if min(sample.shape[:2] + result.shape[:2]) < SIDE:
             break
     return 100.0 * float(np.mean(distances))
 
 
-def halve(image: Image) -> Image:
+def halve(image: Float32[np.ndarray, "row column *rest"]) -> Float32[np.ndarray, "row2 column2 *rest"]:
     """Means of 2×2 texels; an odd last row or column is dropped."""
     even = image[: image.shape[0] // 2 * 2, : image.shape[1] // 2 * 2]
     return (even[0::2, 0::2] + even[1::2, 0::2] + even[0::2, 1::2] + even[1::2, 1::2]) * np.float32(0.25)
 
 
-def _projected_distance(sample: Float32[np.ndarray, "texel dim"], result: Float32[np.ndarray, "patch dim"]) -> float:
+def projected_wasserstein(sample: Float32[np.ndarray, "texel dim"], result: Float32[np.ndarray, "patch dim"]) -> float:
+    """Mean distance of 1024 quantiles over the fixed projections of two sets of vectors, however many each holds."""
     directions = _directions(sample.shape[1])
 
     def distance(first: int, last: int) -> float:

@@ -6,10 +6,13 @@ from jaxtyping import Float32, Shaped
 from texloom.arrays import Image
 from texloom.errors import ParameterError
 
+Picture = Float32[np.ndarray, "row2 column2 channel"]
+"""The second of two pictures that are compared: as many channels, its own size."""
+
 SIDE = 7  # texels; every score looks through 7×7 windows
 
 
-def encoded(image: Shaped[np.ndarray, "row column ..."]) -> Image:
+def encoded(image: Shaped[np.ndarray, "..."]) -> Image:
     """An image as it is stored (sRGB for colours), as floats in [0, 1] with a channel axis.
 
     Integers are divided by their type's largest value; floats are taken as they are.
@@ -24,7 +27,7 @@ def encoded(image: Shaped[np.ndarray, "row column ..."]) -> Image:
     return np.ascontiguousarray(values, np.float32)
 
 
-def windows(image: Shaped[np.ndarray, "row column channel"]) -> Shaped[np.ndarray, "row column channel side side"]:
+def windows(image: Shaped[np.ndarray, "row column channel"]) -> Shaped[np.ndarray, "row2 column2 channel side side"]:
     """A view of every whole patch, at its top left texel; copies nothing."""
     return np.lib.stride_tricks.sliding_window_view(image, (SIDE, SIDE), axis=(0, 1))
 

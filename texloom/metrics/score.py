@@ -10,7 +10,7 @@ from texloom.errors import ParameterError
 from texloom.metrics.copying import copy_side
 from texloom.metrics.distribution import sliced_wasserstein
 from texloom.metrics.nearest import nearest
-from texloom.metrics.patches import encoded, patch_vectors, windows
+from texloom.metrics.patches import Picture, encoded, patch_vectors, windows
 from texloom.metrics.seam import seam_ratio
 
 QUERIES = 2500  # patches asked for their nearest neighbour, per direction
@@ -28,23 +28,22 @@ class Scores:
 
 
 def score(
-    sample: Shaped[np.ndarray, "row column ..."],
-    result: Shaped[np.ndarray, "row2 column2 ..."],
+    sample: Shaped[np.ndarray, "..."],
+    result: Shaped[np.ndarray, "..."],
     *,
     queries: int | None = QUERIES,
 ) -> Scores:
     """Scores of a result against its sample, both as stored (encoded), integers or floats in [0, 1].
 
-    Coherence and completeness are means over about ``queries`` patches on a regular grid over all of them, each with its
-    exact nearest neighbour among *all* patches of the other picture; None asks every patch.
+    Coherence and completeness are means over about ``queries`` patches on a regular grid over all of them, each with
+    its exact nearest neighbour among *all* patches of the other picture; None asks every patch.
 
     Raises: ParameterError, if the channels differ or a picture is smaller than a patch.
     """
     ours, theirs = encoded(result), encoded(sample)
     if ours.shape[2] != theirs.shape[2]:
-        raise ParameterError(
-            f"the sample has {theirs.shape[2]} channels and the result {ours.shape[2]}: score like maps"
-        )
+        channels = f"the sample has {theirs.shape[2]} channels and the result {ours.shape[2]}"
+        raise ParameterError(f"{channels}: score maps of the same kind")
     places = grid_places(ours, queries)
     coherence, matches = _nearest_patches(ours, theirs, places)
     completeness, _ = _nearest_patches(theirs, ours, grid_places(theirs, queries))
@@ -71,7 +70,7 @@ def _middles(length: int, count: int) -> Int[np.ndarray, "count"]:
 
 
 def _nearest_patches(
-    asking: Image, asked: Image, places: Int[np.ndarray, "place 2"]
+    asking: Image, asked: Picture, places: Int[np.ndarray, "place 2"]
 ) -> tuple[float, Int[np.ndarray, "place 2"]]:
     """Mean RMS (of 255) from patches at ``places`` to the nearest of all in the other picture, and where these are."""
     view = windows(asking)

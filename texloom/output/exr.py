@@ -55,7 +55,7 @@ def _header(rows: int, columns: int, names: list[str], text: Mapping[str, str]) 
 
 
 def _pack(raw: bytes) -> bytes:
-    """EXR's ZIP: bytes de-interleaved into two halves, differenced, deflated; left as they are if that is no shorter."""
+    """EXR's ZIP: bytes split into even and odd, differenced, deflated; left as they are where that is no shorter."""
     data = np.frombuffer(raw, np.uint8)
     split = np.concatenate([data[0::2], data[1::2]]).astype(np.int16)
     predicted = split.copy()

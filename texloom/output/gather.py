@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Float32, Int, Int32
+from jaxtyping import Float, Float32, Int
 
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Exemplar, Map
@@ -63,10 +63,10 @@ def gather_points(
 
 
 def gather_images(sources: SourceMap, exemplar: Exemplar, *, rows: int, columns: int) -> dict[str, Map]:
-    """Every map of the stack over a grid of ``rows × columns`` sites in row order, stored as the exemplar's maps are."""
+    """Every map of the stack over a grid of sites in row order, stored as the exemplar's maps are."""
     if rows * columns != sources.count:
         raise ParameterError(
-            f"{rows}×{columns} is {rows * columns} texels, but the sources are of {sources.count} sites"
+            f"{rows}×{columns} texels were asked of sources for {sources.count} sites: give their own size"
         )
     return {
         name: Map(gather_sites(sources, map).reshape(rows, columns, -1), map.kind, map.bits)
@@ -76,7 +76,11 @@ def gather_images(sources: SourceMap, exemplar: Exemplar, *, rows: int, columns:
 
 def identity_sources(rows: int, columns: int) -> SourceMap:
     """The sources of a copy: site (row, column) shows texel (row, column)."""
-    position = np.stack(np.mgrid[:rows, :columns], axis=-1).reshape(-1, 1, 2).astype(np.float32)
+    position = (
+        np.stack(np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij"), axis=-1)
+        .reshape(-1, 1, 2)
+        .astype(np.float32)
+    )
     return SourceMap(position, np.ones((rows * columns, 1), np.float32))
 
 

@@ -38,7 +38,7 @@ def write_images(
     """A stack of maps: a folder with one file a map, or a single file where there is one map (with "alpha" or not).
 
     ``path`` is a file if its suffix is that of an image, else a folder, made where it is missing; all files of a folder
-    appear together or not at all. ``suffix`` is the format inside a folder; a float map in a folder of PNGs becomes EXR.
+    appear together or not at all. ``suffix`` is the format in a folder; a float map in a folder of PNGs becomes EXR.
     """
     path = Path(path)
     if path.suffix.lower() in _WRITERS or (path.suffix and not path.is_dir()):

@@ -25,7 +25,7 @@ class _Outline:
 def pack_charts(
     flat: Float[np.ndarray, "face 3 2"], chart: Int[np.ndarray, "face"], *, size: int, gutter: int
 ) -> Float64[np.ndarray, "face 3 2"]:
-    """UVs (v up) in the unit square with one scale for all charts, at least ``gutter`` texels apart and from the rim."""
+    """UVs (v up) in the unit square with one scale for all charts, at least ``gutter`` texels apart."""
     flat = _boxed(_uprighted(flat, chart), chart)
     area = _areas(flat).sum()
     cells = flat * (0.75 * _CELLS / np.sqrt(max(area, 1e-300)))

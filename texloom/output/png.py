@@ -69,7 +69,7 @@ def _filtered(image: np.ndarray) -> UInt8[np.ndarray, "row byte"]:
 
 def _deflate(data: UInt8[np.ndarray, "row byte"]) -> bytes:
     """A zlib stream, deflated in blocks that end on byte borders and simply follow one another."""
-    view = memoryview(np.ascontiguousarray(data)).cast("B")
+    view = memoryview(data.tobytes())
     count = -(-len(view) // _BLOCK)
 
     def deflate_block(number: int) -> bytes:

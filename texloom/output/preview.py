@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Float32, Int, UInt8
 
-from texloom.kernels import raster as kernels
 from texloom.kernels.launch import launch
+from texloom.kernels.raster import draw_rows
+from texloom.kernels.shade import shade_pixels
 from texloom.output.camera import Camera, Projection, project, turntable
 from texloom.output.image import encoded_picture
 from texloom.output.rows import FaceRows, face_rows
@@ -92,7 +93,7 @@ class _Scene:
         rows = face_rows(corners, samples)
         inverse = (1 / projection.distance if projection.perspective else -projection.distance)[self.faces]
         visible, depth = np.empty((samples, samples), np.int32), np.empty((samples, samples), np.float32)
-        launch(kernels.draw_rows, samples, inputs=[*rows.arrays, inverse], outputs=[visible, depth])
+        launch(draw_rows, samples, inputs=[*rows.arrays, inverse], outputs=[visible, depth])
         light, cover = self._shaded(projection, rows, visible, inverse, size)
         return light + (1 - cover[..., None]) * _background(size)
 
@@ -108,7 +109,7 @@ class _Scene:
         lights = [key, fill, _vec3(np.array([0.0, 1.0, 0.0])), self.gloss]
         mesh = [self.faces, self.vertices, self.normals]
         inputs = [visible, rows.corners, nearness, *mesh, *self.skin, *camera, *lights]
-        launch(kernels.shade_pixels, size * size, inputs=inputs, outputs=[light, cover])
+        launch(shade_pixels, size * size, inputs=inputs, outputs=[light, cover])
         return light.reshape(size, size, 3), cover.reshape(size, size)
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Float32, Int
 
+from texloom.domain.surface import Surface
 from texloom.errors import MeshError
 
 
@@ -25,6 +26,21 @@ class SurfaceSites:
     scale: Float[np.ndarray, "site"] | None = None
     parent: Int[np.ndarray, "face"] | None = None
     corners: Float[np.ndarray, "face 3 3"] | None = None
+
+    @classmethod
+    def of(cls, surface: Surface) -> "SurfaceSites":
+        """The sites of a surface domain."""
+        refined = surface.refined
+        return cls(
+            vertices=refined.mesh.vertices,
+            faces=refined.mesh.faces,
+            direction=surface.direction,
+            normal=surface.normal,
+            texel=surface.texel,
+            scale=surface.scale,
+            parent=refined.parent,
+            corners=refined.corner_barycentric,
+        )
 
     def at_corners(self, values: Float[np.ndarray, "user_face 3 n"]) -> Float32[np.ndarray, "face 3 n"]:
         """Values given at the corners of the user's faces, at the corners of the refined faces."""

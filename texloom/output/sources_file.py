@@ -61,6 +61,7 @@ def load_sources(path: str | Path) -> SavedSources:
 
 def _header(path: Path, arrays: Mapping[str, np.ndarray]) -> dict:
     """The header, checked."""
+    header: dict = {}
     try:
         header = json.loads(str(arrays["header"]))
         kind, version = header["kind"], header["format"]

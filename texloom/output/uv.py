@@ -39,9 +39,7 @@ class UvDiagnosis:
         if self.mirrored:
             found.append(f"{self.mirrored} of {self.faces} faces have mirrored UVs")
         if self.outside:
-            found.append(
-                f"{self.outside} of {self.faces} faces have UVs outside the unit square, where the texture wraps"
-            )
+            found.append(f"{self.outside} of {self.faces} faces have UVs that wrap")
         if self.spanning:
             found.append(f"{self.spanning} of {self.faces} faces span a whole texture or more")
         if self.missing:
@@ -59,10 +57,11 @@ class UvDiagnosis:
 
 
 def diagnose_uv(uv: Float[np.ndarray, "face 3 2"]) -> UvDiagnosis:
-    """Look for overlapping, mirrored, outlying, spanning and degenerate UVs.
+    """Look for overlapping, mirrored, wrapping, spanning, degenerate and missing UVs.
 
-    UVs outside the unit square are wrapped into it, as a repeating texture is read, before overlaps are counted. Mirrored alone is no obstacle (the tangent frame is mirrored too); with overlap it is the usual way of modelling one
-    half and texturing it twice, which a texture without repetition cannot serve.
+    UVs outside the unit square are wrapped into it, as a repeating texture is read, before overlaps are counted.
+    Mirrored alone is no obstacle (the tangent frame is mirrored too); with overlap it is the usual way of modelling
+    one half and texturing it twice, which a texture without repetition cannot serve.
     """
     faces = len(uv)
     uv = np.asarray(uv, np.float64)

@@ -1,0 +1,74 @@
+"""``texloom surface`` and the options that only it has."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from texloom.cli import main as command
+from texloom.demo import write_sample
+from texloom.demo.polygonise import polygonise
+from texloom.demo.shapes import ball
+from texloom.demo.write import write_obj
+
+Captured = pytest.CaptureFixture[str]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small ball and a small sample."""
+    folder = tmp_path_factory.mktemp("surface")
+    write_sample(folder / "weave", "weave", size=48)
+    write_obj(
+        folder / "ball.obj", polygonise(ball((0, 0, 0), 1.0), low=np.full(3, -1.3), high=np.full(3, 1.3), step=0.3)
+    )
+    return folder
+
+
+def run(folder: Path, *words: object) -> int:
+    return command.main(["surface", str(folder / "ball.obj"), str(folder / "weave"), *map(str, words)])
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["-o", "a.glb", "--repeats", 2, "--texel", 0.1], "--repeats and --texel both set the size"),
+        (["-o", "a.png"], "a.png: --as atlas is written as .glb or .obj"),
+        (["-o", "a.ply", "--as", "atlas"], "a.ply: --as atlas is written as .glb or .obj"),
+        (["-o", "a.obj", "--as", "vertex"], "a.obj: --as vertex is written as .glb or .ply"),
+        (["-o", "a.glb", "--as", "voxels"], "unknown home 'voxels': choose vertex or atlas"),
+        (["-o", "a.glb", "--texel", "-1"], "a texel of -1 world units"),
+        (["-o", "a.glb", "--symmetry", "3"], "symmetry 3 is not offered: choose 1, 2, 4 or 6"),
+        (["-o", "a.glb", "--direction", "1,2"], "a vector has 3 numbers"),
+        (["-o", "a.glb", "--direction", "arrows.json"], "arrows.json: no such file"),
+        (["-o", "a.glb", "--scale", "scale.npy"], "scale.npy: no such file"),
+        (["-o", "a.glb", "--material", "fur"], "no material 'fur'"),
+        (["-o", "a.glb", "--preview", "nowhere/a.png"], "there is no folder nowhere"),
+    ],
+)
+def test_bad_options_are_one_line(folder: Path, words: list[object], message: str, capsys: Captured) -> None:
+    assert run(folder, *words) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and err.startswith("texloom: ") and err.count("\n") == 1
+    assert message in err
+    assert not Path("a.glb").exists()
+
+
+def test_a_ball_is_textured(folder: Path, capsys: Captured) -> None:
+    words = ["-o", folder / "a.glb", "--repeats", 1, "--preview", folder / "a.png", "--atlas-size", 64, "--json"]
+    assert run(folder, *words) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["uv"] == "fresh atlas, 64×64" and facts["as"] == "atlas"
+    assert [Path(file).name for file in facts["files"]] == ["a.glb", "a.png"]
+    assert (folder / "a.glb").read_bytes()[:4] == b"glTF"
+    assert np.asarray(Image.open(folder / "a.png")).std() > 10
+
+
+def test_vertex_colours_follow_an_arrow(folder: Path, capsys: Captured) -> None:
+    (folder / "arrows.json").write_text('[{"point": [0, 0, 1], "direction": [0, 1, 0]}]')
+    words = ["-o", folder / "a.ply", "--repeats", 1, "--direction", folder / "arrows.json", "--json"]
+    assert run(folder, *words) == 0
+    assert json.loads(capsys.readouterr().out)["as"] == "vertex"
+    assert (folder / "a.ply").read_bytes().startswith(b"ply")

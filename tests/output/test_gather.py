@@ -1,0 +1,129 @@
+"""Values through sources: identity, exactness, rotation laws, and a naive oracle."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from texloom.errors import ParameterError
+from texloom.exemplar.exemplar import Exemplar, Map, to_map
+from texloom.output.gather import gather_images, gather_points, gather_sites, identity_sources
+from texloom.output.image import stored
+from texloom.sources import SourceMap
+
+
+def noise(rows=9, columns=7, channels=3, kind="data", seed=0):
+    return Map(np.random.default_rng(seed).random((rows, columns, channels), dtype=np.float32), kind, 8)
+
+
+def unit_normals(rows=8, columns=8, seed=1):
+    vectors = np.random.default_rng(seed).normal(size=(rows, columns, 3)) + [0, 0, 3]
+    vectors /= np.linalg.norm(vectors, axis=2, keepdims=True)
+    return Map((0.5 * vectors + 0.5).astype(np.float32), "normal", 8)
+
+
+def sample(image, row, column):
+    """Bilinear, nearest edge outside."""
+    row, column = np.clip(row, 0, image.shape[0] - 1), np.clip(column, 0, image.shape[1] - 1)
+    r, c = int(row), int(column)
+    r1, c1 = min(r + 1, image.shape[0] - 1), min(c + 1, image.shape[1] - 1)
+    fr, fc = row - r, column - c
+    return (1 - fr) * ((1 - fc) * image[r, c] + fc * image[r, c1]) + fr * ((1 - fc) * image[r1, c] + fc * image[r1, c1])
+
+
+@pytest.mark.parametrize("kind", ["colour", "data", "normal"])
+@pytest.mark.parametrize("depth", [np.uint8, np.uint16])
+def test_a_copy_gives_back_every_stored_integer(kind, depth):
+    values = np.random.default_rng(2).integers(0, np.iinfo(depth).max + 1, (31, 17, 3)).astype(depth)
+    exemplar = Exemplar({"map": to_map(values, kind)})
+    copied = gather_images(identity_sources(31, 17), exemplar, rows=31, columns=17)["map"]
+    np.testing.assert_array_equal(stored(copied, copied.bits), values)
+
+
+@pytest.mark.parametrize("depth", [np.uint8, np.uint16])
+def test_every_colour_value_survives_linear_light(depth):
+    values = np.arange(np.iinfo(depth).max + 1, dtype=depth).reshape(-1, 16, 1)
+    np.testing.assert_array_equal(stored(to_map(values, "colour"), values.dtype.itemsize * 8), values)
+
+
+def test_sites_match_the_naive_blend():
+    rng, map = np.random.default_rng(3), noise()
+    position = rng.uniform(-2, 10, (40, 3, 2)).astype(np.float32)
+    weight = rng.dirichlet(np.ones(3), 40).astype(np.float32)
+    weight[:5] = [1, 0, 0]
+    expected = [
+        sum(w * sample(map.image, *p) for p, w in zip(ps, ws, strict=True))
+        for ps, ws in zip(position, weight, strict=True)
+    ]
+    np.testing.assert_allclose(gather_sites(SourceMap(position, weight), map), expected, atol=2e-6)
+
+
+def test_points_match_the_naive_blend():
+    rng, map = np.random.default_rng(4), noise(20, 20)
+    position = rng.uniform(3, 16, (12, 2, 2)).astype(np.float32)
+    weight = rng.dirichlet(np.ones(2), 12).astype(np.float32)
+    turn, scale = rng.uniform(-3, 3, (12, 2)).astype(np.float32), rng.uniform(0.5, 2, (12, 2)).astype(np.float32)
+    sites, barycentric = rng.integers(0, 12, (30, 3)), rng.dirichlet(np.ones(3), 30)
+    offsets = rng.uniform(-1, 1, (30, 3, 2))
+    found = gather_points(
+        SourceMap(position, weight, turn, scale), map, sites, barycentric=barycentric, offsets=offsets
+    )
+    expected = np.zeros((30, 3))
+    for i in range(30):
+        for s, b, (row, column) in zip(sites[i], barycentric[i], offsets[i], strict=True):
+            for k in range(2):
+                cosine, sine = np.cos(turn[s, k]), np.sin(turn[s, k])
+                moved = np.array([cosine * row + sine * column, cosine * column - sine * row]) / scale[s, k]
+                expected[i] += b * weight[s, k] * sample(map.image, *(position[s, k] + moved))
+    np.testing.assert_allclose(found, expected, atol=1e-5)
+
+
+def test_corners_that_agree_show_the_exemplar_itself():
+    """Three coherent sites reproduce the exemplar at any point between them, whatever the weights."""
+    map, sources = noise(12, 12), identity_sources(12, 12)
+    point, corners = np.array([4.3, 5.6]), np.array([[4, 5], [5, 5], [4, 6]])
+    value = gather_points(
+        sources,
+        map,
+        (corners[:, 0] * 12 + corners[:, 1])[None],
+        barycentric=np.array([[0.1, 0.3, 0.6]]),
+        offsets=(point - corners)[None],
+    )
+    np.testing.assert_allclose(value[0], sample(map.image, *point), atol=1e-6)
+
+
+@settings(max_examples=30, deadline=None)
+@given(turn=st.floats(-7, 7), more=st.floats(-7, 7))
+def test_turns_of_normals_add_up_and_keep_lengths(turn, more):
+    map = unit_normals()
+    sources = identity_sources(8, 8)
+    turned = SourceMap(sources.position, sources.weight, np.full((64, 1), turn, np.float32))
+    once = gather_sites(turned, map)
+    np.testing.assert_allclose(np.linalg.norm(2 * once - 1, axis=1), 1, atol=1e-5)
+    sites = np.repeat(np.arange(64)[:, None], 3, axis=1)
+    whole = {"barycentric": np.tile([1.0, 0, 0], (64, 1)), "offsets": np.zeros((64, 3, 2))}
+    both = gather_points(turned, map, sites, **whole, frame_turn=np.full((64, 3), more))
+    sum_turned = SourceMap(sources.position, sources.weight, np.full((64, 1), turn + more, np.float32))
+    np.testing.assert_allclose(both, gather_sites(sum_turned, map), atol=1e-5)
+
+
+def test_a_quarter_turn_sends_x_to_y():
+    map = Map(np.array([[[1.0, 0.5, 0.5]]], np.float32), "normal", 8)
+    sources = SourceMap(
+        np.zeros((1, 1, 2), np.float32), np.ones((1, 1), np.float32), np.full((1, 1), np.pi / 2, np.float32)
+    )
+    np.testing.assert_allclose(gather_sites(sources, map)[0], [0.5, 1.0, 0.5], atol=1e-6)
+
+
+def test_a_blend_of_normals_is_renormalised():
+    map = Map(np.array([[[1.0, 0.5, 0.5], [0.5, 1.0, 0.5]]], np.float32), "normal", 8)
+    sources = SourceMap(np.array([[[0, 0], [0, 1]]], np.float32), np.full((1, 2), 0.5, np.float32))
+    half = 0.5 + 0.5 * np.sqrt(0.5)
+    np.testing.assert_allclose(gather_sites(sources, map)[0], [half, half, 0.5], atol=1e-6)
+
+
+def test_a_wrong_size_and_a_thin_normal_map_are_refused():
+    with pytest.raises(ParameterError, match="3×5"):
+        gather_images(identity_sources(4, 4), Exemplar({"a": noise(9, 9)}), rows=3, columns=5)
+    with pytest.raises(ParameterError, match="3 channels"):
+        gather_sites(identity_sources(4, 4), noise(channels=2, kind="normal"))

@@ -1,0 +1,145 @@
+"""Patch-based sampling as published: patches matched on their boundary zones, pasted in random order, blended."""
+
+import time
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Int32
+
+from texloom import draws
+from texloom.domain.cover import group_by_site
+from texloom.domain.domain import Domain
+from texloom.domain.patches import Patches
+from texloom.errors import ParameterError
+from texloom.exemplar.exemplar import Exemplar
+from texloom.exemplar.patches import boundary_samples
+from texloom.kernels.launch import launch
+from texloom.kernels.patches import paste_blocks
+from texloom.progress import Report
+from texloom.search.analysis import Analysis, analyse
+from texloom.search.matching import Search
+from texloom.search.principal import PcaNearest
+from texloom.synthesis.canvas import Canvas, in_fours
+from texloom.synthesis.layers import feathered
+from texloom.synthesis.least_squares import fill_unknown
+from texloom.synthesis.reading import read
+from texloom.synthesis.result import Result
+from texloom.synthesis.schedule import batches, breadth_first, overlaps
+
+_START = 0xB0DA  # purpose of the draws of the first texels
+_ORDER = 0xB0DB  # purpose of the draws of the order
+
+
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """Patches half their width apart, and the batches in which they are pasted."""
+
+    patches: Patches
+    groups: list[Int32[np.ndarray, "patch"]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoundarySampling:
+    """Chen, Liu & Dong 2012, section 5.
+
+    Every site starts with a random texel. Each patch in turn is replaced by the patch of the exemplar whose boundary
+    zone is nearest, coarse to fine, so that the untextured part of a boundary is estimated; zones are blended last.
+    """
+
+    patch: int = 32  # texels per side
+    zone: int = 4  # texels: the boundary's width w_E
+    steps: tuple[int, ...] = (4, 2, 1)  # reductions of the levels, coarse to fine
+    order: Literal["random", "breadth-first"] = "random"
+    search: Search = PcaNearest()
+    dimensions: int = 4  # of appearance vectors, beside the feature distance
+
+    def __post_init__(self) -> None:
+        if self.patch % max(self.steps) or self.patch // max(self.steps) < 4:
+            raise ParameterError(f"patch {self.patch} must be a multiple of {max(self.steps)} and 4 times it or more")
+        if self.steps[-1] != 1:
+            raise ParameterError(f"steps {self.steps} must end at 1, the finest level")
+
+    def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
+        """All levels in turn; see ``synthesize``."""
+        clock = [time.perf_counter()]
+        analysis = self.analyse(exemplar)
+        clock.append(time.perf_counter())
+        laid = self.lay(domain, seed)
+        clock.append(time.perf_counter())
+        result = self.solve(analysis, domain, laid, seed=seed, report=report)
+        clock.append(time.perf_counter())
+        seconds = dict(zip(("analysis", "patches", "sampling"), np.diff(clock).tolist(), strict=True))
+        return Result(result.sources, (), seconds, "done", result.patches)
+
+    def analyse(self, exemplar: Exemplar) -> Analysis:
+        """Everything learnt from the exemplar; it can be saved and used again."""
+        analysis = analyse(exemplar, levels=max(self.steps).bit_length(), dimensions=self.dimensions)
+        for step in self.steps:
+            self._index(analysis, step)
+        return analysis
+
+    def lay(self, domain: Domain, seed: int) -> Laid:
+        """The patches and their order."""
+        patches = domain.patches(domain.centres(self.patch / 2, seed), self.patch)
+        shared = overlaps(patches)
+        order = breadth_first(shared) if self.order == "breadth-first" else None
+        if order is None:
+            order = draws.permutation(seed, _ORDER, count=patches.count).astype(np.int32)
+        return Laid(patches, batches(order, shared))
+
+    def solve(self, analysis: Analysis, domain: Domain, laid: Laid, *, seed: int, report: Report) -> Result:
+        """The synthesis alone, on patches already laid and an exemplar already analysed."""
+        patches = laid.patches
+        anchors = np.zeros((patches.count, 2), np.int32)
+        canvas = Canvas.empty(domain.count, in_fours(analysis.appearance[0]).shape[2])
+        canvas.label[:] = 0
+        for number, step in enumerate(self.steps):
+            level = step.bit_length() - 1
+            appearance = in_fours(analysis.appearance[level])
+            shape = np.array(appearance.shape[:2])
+            if number == 0:
+                chance = np.stack([draws.uniform(seed, _START, i, index=np.arange(domain.count)) for i in (0, 1)], 1)
+                texel = (chance * shape).astype(np.int32)
+            else:
+                canvas.position[:] *= self.steps[number - 1] / step
+                texel = np.clip(np.rint(canvas.position).astype(np.int32), 0, shape - 1)
+            canvas.colour[:] = appearance[texel[:, 0], texel[:, 1]]
+            self._lay_level(analysis, laid, canvas, appearance, anchors, step)
+            report("sampling", (number + 1) / len(self.steps))
+        rank = np.empty(patches.count, np.int32)
+        rank[np.concatenate(laid.groups)] = np.arange(patches.count, dtype=np.int32)
+        return Result(feathered(patches, anchors, rank, self.zone), patches=patches.count)
+
+    def _lay_level(self, analysis: Analysis, laid: Laid, canvas: Canvas, appearance, anchors, step: int) -> None:
+        """Match and paste every batch on one level."""
+        patches = laid.patches
+        vectors, index = self._index(analysis, step)
+        samples = self._samples(step) @ np.array([self.patch, 1], np.int32) * np.int32(step)
+        channels = analysis.appearance[0].shape[2]
+        start, entries = group_by_site(patches.cover_patch, patches.count)
+        site = np.repeat(np.arange(len(canvas.label), dtype=np.int32), np.diff(patches.cover_start))
+        everywhere = np.zeros((self.patch**2, 2), np.int32)
+        for chosen in laid.groups:
+            values, known = read(canvas, patches, chosen, samples)
+            queries = fill_unknown(values[..., :channels], known).reshape(len(chosen), -1)
+            anchors[chosen] = vectors.anchors[index.nearest(queries).index]
+            own = np.concatenate([entries[start[p] : start[p + 1]] for p in chosen])
+            owner = np.repeat(np.arange(len(chosen), dtype=np.int32), np.diff(start)[chosen])
+            turn = np.zeros(1, np.float32) if patches.cover_turn is None else patches.cover_turn
+            launch(
+                paste_blocks,
+                len(own),
+                inputs=[
+                    *(own, owner, site, patches.cover_position, turn, chosen, anchors[chosen]),
+                    *(1.0 / step, self.patch, everywhere, np.zeros((len(chosen), 1), np.int32), appearance),
+                ],
+                outputs=[canvas.label, canvas.position, canvas.turn, canvas.colour, np.empty(len(own), np.uint8)],
+            )
+
+    def _samples(self, step: int) -> Int32[np.ndarray, "sample 2"]:
+        """The boundary zone of a level's patches, in texels of that level."""
+        return boundary_samples(self.patch // step, max(1, self.zone // step))
+
+    def _index(self, analysis: Analysis, step: int):
+        return analysis.index(self.search, step.bit_length() - 1, self.patch // step, self._samples(step))

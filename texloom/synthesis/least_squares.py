@@ -1,0 +1,189 @@
+"""Texture optimization as published: nearest patches and least squares by turns, coarse to fine."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float32, Int32
+
+from texloom import draws
+from texloom.domain.domain import Domain
+from texloom.domain.patches import Patches
+from texloom.errors import ParameterError
+from texloom.exemplar.exemplar import Exemplar
+from texloom.exemplar.patches import even_samples
+from texloom.kernels.averaging import average_patches
+from texloom.kernels.launch import launch
+from texloom.progress import Report
+from texloom.search.analysis import Analysis, analyse
+from texloom.search.matching import Search
+from texloom.search.principal import PcaNearest
+from texloom.synthesis.canvas import Canvas, in_fours
+from texloom.synthesis.layers import heaviest
+from texloom.synthesis.reading import read
+from texloom.synthesis.result import Result
+
+_START = 0x57A7  # purpose of the draws of the first anchors
+_ROBUST = -0.4  # power of the squared mismatch: |X - Z|^-0.8
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Patches of ``width × width`` texels of the level reduced ``step`` times (1, 2, 4, ...)."""
+
+    step: int
+    width: int
+
+    @property
+    def extent(self) -> int:
+        """Texels of the finest level a patch spans."""
+        return self.step * self.width
+
+
+def stages(largest: int = 32) -> tuple[Stage, ...]:
+    """The schedule of section 4.4, figure 5: ¼:8, ½:16, ½:8, 1:32, 1:16, 1:8 for the paper's 32; 40 for large structure."""
+    if largest % 4 or largest < 8:
+        raise ParameterError(f"the largest patch is {largest} texels, but must be a multiple of 4, 8 or more")
+    half, quarter = largest // 2, largest // 4
+    return (
+        *(Stage(4, quarter), Stage(2, half), Stage(2, quarter)),
+        *(Stage(1, largest), Stage(1, half), Stage(1, quarter)),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeastSquares:
+    """Chen, Liu & Dong 2012, section 4.
+
+    E-step: every site takes the weighted mean of the patches over it, weights |X_p - Z_p|^-0.8. M-step: every patch
+    takes its nearest in the exemplar, in appearance space, on ``samples × samples`` representative texels.
+
+    Departures: a site keeps its four heaviest patches instead of all sixteen, which blurs less.
+    """
+
+    schedule: tuple[Stage, ...] = stages()
+    iterations: int = 10  # at most, a stage
+    search: Search = PcaNearest()
+    samples: int = 8
+    dimensions: int = 4  # of appearance vectors, beside the feature distance
+
+    def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
+        """All stages in turn; see ``synthesize``."""
+        clock = time.perf_counter()
+        analysis = self.analyse(exemplar)
+        seconds = {"analysis": time.perf_counter() - clock}
+        clock = time.perf_counter()
+        laid = {extent: lay(domain, extent, seed) for extent in sorted({stage.extent for stage in self.schedule})}
+        seconds["patches"] = time.perf_counter() - clock
+        clock = time.perf_counter()
+        result = self.solve(analysis, domain, laid, seed=seed, report=report)
+        return Result(
+            result.sources,
+            result.energy,
+            seconds | {"optimization": time.perf_counter() - clock},
+            result.stopped,
+            result.patches,
+        )
+
+    def analyse(self, exemplar: Exemplar) -> Analysis:
+        """Everything learnt from the exemplar, indices of all stages included; it can be saved and used again."""
+        levels = 1 + max(stage.step for stage in self.schedule).bit_length() - 1
+        analysis = analyse(exemplar, levels=levels, dimensions=self.dimensions)
+        for stage in self.schedule:
+            self._index(analysis, stage)
+        return analysis
+
+    def solve(
+        self, analysis: Analysis, domain: Domain, laid: dict[int, Patches], *, seed: int, report: Report
+    ) -> Result:
+        """The synthesis alone, on patches already laid (by extent) and an exemplar already analysed."""
+        canvas: Canvas | None = None
+        energy: list[float] = []
+        stopped = "iterations"
+        total = len(self.schedule)
+        anchors, weight, stage = np.empty((0, 2), np.int32), np.empty(0, np.float32), self.schedule[-1]
+        for number, stage in enumerate(self.schedule):
+            patches = laid[stage.extent]
+            vectors, index = self._index(analysis, stage)
+            appearance = in_fours(analysis.appearance[stage.step.bit_length() - 1])
+            samples = self._samples(stage)
+            sampled = np.ascontiguousarray(samples @ np.array([stage.extent, 1]) * stage.step, dtype=np.int32)
+            if canvas is None:
+                canvas = Canvas.empty(domain.count, appearance.shape[2])
+                canvas.label[:] = 0
+                choice = draws.uniform(seed, _START, index=np.arange(patches.count)) * len(vectors.anchors)
+                found = choice.astype(np.int32)
+                weight = np.ones(patches.count, np.float32)
+            else:
+                found, weight, _ = _maximize(canvas, patches, sampled, index, analysis)
+            for iteration in range(self.iterations):
+                anchors = np.ascontiguousarray(vectors.anchors[found])
+                _expect(canvas, patches, anchors, weight, appearance, stage.step)
+                before = found
+                found, weight, cost = _maximize(canvas, patches, sampled, index, analysis)
+                energy.append(cost / len(samples))
+                report("optimization", (number + (iteration + 1) / self.iterations) / total)
+                if np.array_equal(found, before):
+                    stopped = "converged"
+                    break
+            else:
+                stopped = "iterations"
+            anchors = np.ascontiguousarray(vectors.anchors[found])
+        count = sum(laid[stage.extent].count for stage in self.schedule)
+        sources = heaviest(laid[stage.extent], anchors * np.int32(stage.step), weight, 1.0)
+        return Result(sources, tuple(energy), {}, stopped, count)
+
+    def _samples(self, stage: Stage) -> Int32[np.ndarray, "sample 2"]:
+        """Representative texels of a stage's patches [row, column], in texels of its level."""
+        return even_samples(stage.width, min(self.samples, stage.width))
+
+    def _index(self, analysis: Analysis, stage: Stage):
+        return analysis.index(self.search, stage.step.bit_length() - 1, stage.width, self._samples(stage))
+
+
+def lay(domain: Domain, extent: int, seed: int) -> Patches:
+    """Patches a quarter of their extent apart (section 4.2), sixteen over each site."""
+    return domain.patches(domain.centres(max(extent / 4, 1.0), seed), extent)
+
+
+def _expect(
+    canvas: Canvas,
+    patches: Patches,
+    anchors: Int32[np.ndarray, "patch 2"],
+    weight: Float32[np.ndarray, "patch"],
+    appearance: Float32[np.ndarray, "row column channel"],
+    step: int,
+) -> None:
+    """The E-step: weighted means."""
+    launch(
+        average_patches,
+        len(canvas.colour),
+        inputs=[
+            *(patches.cover_start, patches.cover_patch, patches.cover_position),
+            *(anchors, weight, 1.0 / step, appearance),
+        ],
+        outputs=[canvas.colour],
+    )
+
+
+def _maximize(
+    canvas: Canvas, patches: Patches, samples: Int32[np.ndarray, "sample"], index, analysis: Analysis
+) -> tuple[Int32[np.ndarray, "patch"], Float32[np.ndarray, "patch"], float]:
+    """The M-step: the nearest patch of each, its weight for the next E-step, and the mean mismatch."""
+    channels = analysis.appearance[0].shape[2]
+    values, known = read(canvas, patches, np.arange(patches.count, dtype=np.int32), samples)
+    queries = fill_unknown(values[..., :channels], known).reshape(patches.count, -1)
+    match = index.nearest(queries)
+    weight = np.maximum(match.cost, 1e-6) ** np.float32(_ROBUST)
+    return match.index, weight.astype(np.float32), float(match.cost.mean(dtype=np.float64))
+
+
+def fill_unknown(
+    values: Float32[np.ndarray, "patch sample channel"], known: Float32[np.ndarray, "patch sample"]
+) -> Float32[np.ndarray, "patch sample channel"]:
+    """Samples out of reach take the mean of the patch's others, where they pull the match nowhere in particular."""
+    values = np.ascontiguousarray(values)
+    if known.all():
+        return values
+    mean = values.sum(1, keepdims=True) / np.maximum(known.sum(1), 1)[:, None, None]
+    return np.where(known[:, :, None] > 0, values, mean).astype(np.float32)
