@@ -61,6 +61,7 @@ def test_version(capsys: Captured) -> None:
         (["image", "{sample}", "-o", "out.png", "--method", "weave"], "'weave': choose optimize or patches"),
         (["image", "{sample}", "-o", "out.png", "--search", "x"], "exhaustive, pca, pca-clusters or clusters"),
         (["image", "{sample}", "-o", "out.png", "--preset", "x"], "unknown preset 'x': choose resampling"),
+        (["image", "{sample}", "-o", "out.png", "--search", "pca"], "add --preset resampling"),
         (["image", "{sample}", "{sample}", "-o", "out.png"], "2 samples were given"),
         (["image", "{sample}", "-o", "nowhere/out.png"], "there is no folder nowhere"),
         (["score", "{sample}", "bunny.glb"], "bunny.glb is a mesh"),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from texloom.cli.planes import plane, planar_field
+from texloom.cli.planes import planar_field, plane
 from texloom.errors import TexloomError
 
 
@@ -36,7 +36,7 @@ def test_vectors_and_images_are_stretched_to_the_grid(tmp_path: Path) -> None:
     [
         ("spiral", False, "choose uniform, radial, sine, ring, uniform:DEGREES, or a file"),
         ("uniform:east", False, "give degrees, as in uniform:30"),
-        ("uniform:nan", False, "0 or not finite"),
+        ("uniform:nan", False, "give degrees"),
         ("ring", True, "--tileable and --field ring exclude each other"),
     ],
 )

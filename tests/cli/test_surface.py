@@ -66,6 +66,15 @@ def test_a_ball_is_textured(folder: Path, capsys: Captured) -> None:
     assert np.asarray(Image.open(folder / "a.png")).std() > 10
 
 
+def test_sources_of_a_surface_apply_on_its_atlas(folder: Path, capsys: Captured) -> None:
+    words = ["-o", folder / "b.obj", "--repeats", 1, "--atlas-size", 64, "--sources", folder / "b.npz"]
+    assert run(folder, *words) == 0
+    assert command.main(["apply", str(folder / "b.npz"), str(folder / "weave"), "-o", str(folder / "again")]) == 0
+    for name in ("basecolor", "normal"):
+        first, second = folder / f"b-{name}.png", folder / "again" / f"{name}.png"
+        np.testing.assert_array_equal(np.asarray(Image.open(first)), np.asarray(Image.open(second)))
+
+
 def test_vertex_colours_follow_an_arrow(folder: Path, capsys: Captured) -> None:
     (folder / "arrows.json").write_text('[{"point": [0, 0, 1], "direction": [0, 1, 0]}]')
     words = ["-o", folder / "a.ply", "--repeats", 1, "--direction", folder / "arrows.json", "--json"]

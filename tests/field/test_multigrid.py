@@ -57,7 +57,7 @@ def test_smallest_has_the_least_energy(small_levels):
     start = np.exp(1j * np.arange(len(mesh.vertices)))
     found = Multigrid(matrix).smallest(mesh.vertex_areas, mesh.vertex_parts, start)
     energy = np.vdot(found, matrix @ found).real / np.sum(mesh.vertex_areas * np.abs(found) ** 2)
-    np.testing.assert_allclose(energy, least, rtol=0.01)
+    np.testing.assert_allclose(energy, least, rtol=0.03)
 
 
 def test_unknowns_without_couplings_are_solved_too(small_levels):

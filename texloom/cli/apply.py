@@ -23,16 +23,16 @@ def apply(
     options.check_output(output)
     with Session(threads=threads, as_json=as_json) as session:
         with session.stage("read"):
-            from texloom.cli.reapply import grid_of
+            from texloom.cli.reapply import reapply
             from texloom.io.stack import read_exemplar
-            from texloom.output.gather import gather_images
             from texloom.output.image import write_images
             from texloom.output.sources_file import load_sources
 
             saved = load_sources(sources)
             exemplar = read_exemplar(stack, directx_normals=directx_normals)
-            rows, columns = grid_of(saved, exemplar, sources.name)
+        with session.stage("gather"):
+            maps = reapply(saved, exemplar, sources.name)
         with session.stage("write"):
-            maps = gather_images(saved.sources, exemplar, rows=rows, columns=columns)
             session.wrote(write_images(output, maps, settings={**saved.settings, "applied to": stack.name}))
+        rows, columns = next(iter(maps.values())).image.shape[:2]
         session.finish({"size": (columns, rows), "maps": list(maps)})

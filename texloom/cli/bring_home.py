@@ -1,4 +1,4 @@
-"""Sources on a surface back on the user's mesh: vertex colours or a baked atlas, a preview, the sources themselves."""
+"""Sources on a surface back on the user's mesh: vertex colours or a baked atlas, and a preview."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from jaxtyping import Float
 from texloom.domain.surface import Surface
 from texloom.exemplar.exemplar import Exemplar, Map, to_map
 from texloom.mesh.model import Model
-from texloom.output.atlas import bake, lay_atlas
+from texloom.output.atlas import Atlas, bake, lay_atlas
 from texloom.output.atomic import atomic
 from texloom.output.gather import gather_sites
 from texloom.output.image import write_image
@@ -19,7 +19,6 @@ from texloom.output.material import base_colour
 from texloom.output.preview import Skin, preview
 from texloom.output.retexture import retextured_glb
 from texloom.output.sites import SurfaceSites
-from texloom.output.sources_file import SavedSources, save_sources
 from texloom.output.tangents import corner_tangents
 from texloom.output.textured import TexturedMesh, write_textured
 from texloom.output.unwrap import unwrap
@@ -67,10 +66,11 @@ class AtlasWish:
 
 @dataclass(frozen=True)
 class Homecoming:
-    """Files written, and whose UVs were used ("" for vertex colours)."""
+    """Files written; whose UVs were used and the atlas on them ("" and None for vertex colours)."""
 
     files: list[Path]
     uv: str = ""
+    atlas: Atlas | None = None
 
 
 def bring_home(
@@ -87,12 +87,8 @@ def bring_home(
     laid = lay_atlas(grown.sites, uv, size=size, gutter=atlas.gutter, tangents=tangents)
     maps = bake(grown.sources, laid, grown.exemplar.maps)
     files = _write_mesh(output, grown.model, maps, uv, tangents, fresh=whose != "own", settings=settings)
-    return Homecoming(files + _write_preview(preview, grown, _baked(maps, uv, tangents)), f"{whose}, {size}×{size}")
-
-
-def save(path: Path, sources: SourceMap, exemplar: Exemplar, settings: Mapping[str, str]) -> Path:
-    """The sources as a file."""
-    return save_sources(path, SavedSources(sources, {"sample": np.array(exemplar.shape)}, settings))
+    files += _write_preview(preview, grown, _baked(maps, uv, tangents))
+    return Homecoming(files, f"{whose}, {size}×{size}", laid)
 
 
 def _choose_uv(grown: Grown, wish: AtlasWish) -> tuple[Float[np.ndarray, "face 3 2"], str]:

@@ -5,10 +5,9 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float64
 
-from texloom.cli.guides import holds_arrows, read_arrows, read_rows
+from texloom.cli.guides import holds_arrows, placed_arrows, vertex_rows
 from texloom.errors import FieldError, ParameterError
 from texloom.field import rbf
-from texloom.field.arrows import Placed, place
 from texloom.field.curvature import along_curvature
 from texloom.field.direction import DirectionField, from_constant, from_vectors
 from texloom.field.scale import checked, from_arrows
@@ -31,8 +30,8 @@ def direction_field(model: Model, wish: str, *, order: int) -> DirectionField:
     if path is None:
         return from_constant(mesh, order, np.array(vector(wish)))
     if not holds_arrows(path):
-        return from_vectors(mesh, order, read_rows(path, model, columns=3))
-    placed = _placed(path, model)
+        return from_vectors(mesh, order, vertex_rows(path, model, columns=3))
+    placed = placed_arrows(path, model)
     if not len(placed.direction):
         raise FieldError(f"{path.name}: none of its {len(placed.scale)} arrows gives a direction")
     through = rbf.directions if wish.startswith(_RBF) else through_arrows
@@ -43,11 +42,11 @@ def scale_field(model: Model, path: Path | None, direction: str) -> Float64[np.n
     """The scale at every vertex: from ``--scale``, else from the arrows of ``--direction``, else None (all 1)."""
     mesh = model.mesh
     if path is not None and not holds_arrows(path):
-        return checked(mesh, read_rows(path, model, columns=1)[:, 0])
+        return checked(mesh, vertex_rows(path, model, columns=1)[:, 0])
     file = path or guide_file(direction)
     if file is None or not holds_arrows(file):
         return None
-    placed = _placed(file, model)
+    placed = placed_arrows(file, model)
     if not len(placed.scale):
         if path is not None:
             raise FieldError(f"{path.name}: none of its {len(placed.direction)} arrows gives a scale")
@@ -72,10 +71,3 @@ def vector(wish: str) -> tuple[float, ...] | None:
     if len(numbers) != 3:
         raise ParameterError(f"--direction {wish}: a vector has 3 numbers, x,y,z; these are {len(numbers)}")
     return numbers
-
-
-def _placed(path: Path, model: Model) -> Placed:
-    try:
-        return place(model.mesh, read_arrows(path, model))
-    except FieldError as error:
-        raise FieldError(f"{path.name}: {str(error).removeprefix(f'{path.name}: ')}") from None

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from texloom.cli import options
+from texloom.cli import methods, options
 from texloom.cli.session import Session
 
 
@@ -28,18 +28,15 @@ def image(
     as_json: options.Json = False,
 ) -> None:
     """Grow an image of any size from a sample; a stack of maps comes out aligned."""
-    from texloom.cli.methods import build_method
-
     rows, columns = options.parse_size(size)
-    chosen = build_method(method, search=search, preset=preset)
+    wanted = methods.wish(method, search, preset)
     path = options.only_sample(samples)
     options.check_output(output, sources)
 
     with Session(device=device, threads=threads, as_json=as_json) as session:
         with session.stage("read"):
-            import numpy as np
-
             from texloom.cli.planes import plane
+            from texloom.cli.reapply import image_domain
             from texloom.io.stack import read_exemplar
             from texloom.output.gather import gather_images
             from texloom.output.image import single_map, write_images
@@ -50,6 +47,7 @@ def image(
             domain = plane(rows, columns, field=field, tileable=tileable)
             if options.is_file(output):
                 single_map(exemplar.maps, output)
+            chosen = wanted.build()
         result = synthesize(exemplar, domain, chosen, seed=seed, report=session.report)
         session.seconds.update(result.seconds)
         settings = options.settings("image", path, method=chosen, seed=seed, size=size, tileable=tileable, field=field)
@@ -57,11 +55,11 @@ def image(
             maps = gather_images(result.sources, exemplar, rows=rows, columns=columns)
             session.wrote(write_images(output, maps, settings=settings))
             if sources is not None:
-                shape = {"rows": np.array(rows), "columns": np.array(columns), "sample": np.array(exemplar.shape)}
-                session.wrote(save_sources(sources, SavedSources(result.sources, shape, settings)))
+                kept = SavedSources(result.sources, image_domain(rows, columns, exemplar), settings)
+                session.wrote(save_sources(sources, kept))
         session.finish(
             {
-                "method": method or options.METHODS[0],
+                "method": wanted.method,
                 "preset": preset,
                 "seed": seed,
                 "size": (columns, rows),

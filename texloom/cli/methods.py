@@ -1,5 +1,6 @@
 """Method and search objects from the names given on the command line."""
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from texloom.cli.options import METHODS, PRESETS, SEARCHES, choose
@@ -9,18 +10,38 @@ if TYPE_CHECKING:
     from texloom.synthesis.synthesize import Method
 
 
-def build_method(name: str | None, *, search: str | None = None, preset: str | None = None) -> "Method":
-    """The method of that name: ours, or with a preset the paper's own, with one of its searches."""
-    name = choose("method", name or METHODS[0], METHODS)
+@dataclass(frozen=True)
+class MethodWish:
+    """The names, checked without importing what they stand for."""
+
+    method: str
+    search: str | None
+    preset: str | None
+
+    def build(self) -> "Method":
+        """Our method of that name, or with a preset the paper's own, with one of its searches."""
+        if self.preset is None:
+            from texloom.synthesis.optimize import Optimize
+            from texloom.synthesis.patches import PatchSampling
+
+            return Optimize() if self.method == "optimize" else PatchSampling()
+        from texloom import search as searches
+        from texloom.synthesis.boundary import BoundarySampling
+        from texloom.synthesis.least_squares import LeastSquares
+
+        paper = LeastSquares if self.method == "optimize" else BoundarySampling
+        return paper() if self.search is None else paper(search=searches.SEARCHES[self.search])
+
+
+def wish(method: str | None, search: str | None, preset: str | None) -> MethodWish:
+    """The method asked for.
+
+    Raises: ParameterError, for an unknown name, or a search without the preset it belongs to.
+    """
     if preset is not None:
         choose("preset", preset, PRESETS)
     if search is not None:
         choose("search", search, SEARCHES)
         if preset is None:
             raise ParameterError(f"--search {search} is part of a paper's method: add --preset {PRESETS[0]}")
-    if preset is None:
-        from texloom.synthesis.optimize import Optimize
-        from texloom.synthesis.patches import PatchSampling
-
-        return Optimize() if name == "optimize" else PatchSampling()
-    raise NotImplementedError
+    return MethodWish(choose("method", method or METHODS[0], METHODS), search, preset)

@@ -26,11 +26,7 @@ def planar_field(wish: str, rows: int, columns: int) -> PlanarField:
     if wish in NAMED:
         return NAMED[wish](rows, columns)
     if wish.startswith("uniform:"):
-        try:
-            degrees = float(wish.removeprefix("uniform:"))
-        except ValueError:
-            raise ParameterError(f"--field {wish}: give degrees, as in uniform:30") from None
-        return uniform(rows, columns, np.deg2rad(degrees))
+        return uniform(rows, columns, np.deg2rad(_degrees(wish)))
     path = Path(wish)
     if not path.exists():
         raise ParameterError(f"--field {wish}: choose {', '.join(NAMED)}, uniform:DEGREES, or a file (there is none)")
@@ -39,6 +35,16 @@ def planar_field(wish: str, rows: int, columns: int) -> PlanarField:
     from texloom.io.image import read_image
 
     return from_image(read_image(path, kind="data").image, rows, columns)
+
+
+def _degrees(wish: str) -> float:
+    try:
+        degrees = float(wish.removeprefix("uniform:"))
+    except ValueError:
+        degrees = np.nan
+    if not np.isfinite(degrees):
+        raise ParameterError(f"--field {wish}: give degrees, as in uniform:30")
+    return degrees
 
 
 def _load(path: Path) -> np.ndarray:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from texloom.cli import options
+from texloom.cli import methods, options
 from texloom.cli.session import Session
 from texloom.errors import ParameterError
 
@@ -52,10 +52,8 @@ def surface(
     as_json: options.Json = False,
 ) -> None:
     """Grow texture over a mesh of any shape, along a direction and a scale field."""
-    from texloom.cli.methods import build_method
-
     chosen_home = _home(home, output)
-    chosen = build_method(method, search=search, preset=preset)
+    wanted = methods.wish(method, search, preset)
     path = options.only_sample(samples)
     if repeats is not None and texel is not None:
         raise ParameterError("--repeats and --texel both set the size of the texture: give one of them")
@@ -65,9 +63,11 @@ def surface(
         with session.stage("read"):
             from texloom.cli import bring_home
             from texloom.cli.fields import direction_field, scale_field
+            from texloom.cli.reapply import surface_domain
             from texloom.domain.surface import Surface, texel_for_repeats
             from texloom.io.mesh import read_mesh
             from texloom.io.stack import read_exemplar
+            from texloom.output.sources_file import SavedSources, save_sources
             from texloom.synthesis.synthesize import synthesize
 
             exemplar = read_exemplar(path, directx_normals=directx_normals)
@@ -78,6 +78,7 @@ def surface(
         with session.stage("sites"):
             length = texel or texel_for_repeats(model.mesh, repeats or _REPEATS, exemplar.shape[1])
             domain = Surface.build(model.mesh, field, texel=length, scale=sizes)
+            chosen = wanted.build()
         result = synthesize(exemplar, domain, chosen, seed=seed, report=session.report)
         session.seconds.update(result.seconds)
         settings = options.settings(
@@ -102,10 +103,11 @@ def surface(
             )
             session.wrote(homecoming.files)
             if sources is not None:
-                session.wrote(bring_home.save(sources, result.sources, exemplar, settings))
+                kept = surface_domain(homecoming.atlas, exemplar)
+                session.wrote(save_sources(sources, SavedSources(result.sources, kept, settings)))
         session.finish(
             {
-                "method": method or options.METHODS[0],
+                "method": wanted.method,
                 "preset": preset,
                 "seed": seed,
                 "sites": domain.count,

@@ -23,8 +23,8 @@ def cover_of(flow: Flow, samples: Samples, width: int, axis: Complex64[np.ndarra
     ``axis`` is the site's frame at every face corner, as a direction in the face.
 
     The offset is measured in the sample's frame, on triangles laid flat around it: first order, exact where the field
-    is straight. Ties keep the lowest sample. Positions end half a texel outside the patch's outer samples, and one
-    texel beyond a sample whose neighbour could not be traced. The turn is a multiple of ``2π / order``: the patch's
+    is straight. Ties keep the lowest sample. Positions end half a texel outside the patch's outer samples, and 0.92
+    texels beyond a sample whose neighbour could not be traced. The turn is a multiple of ``2π / order``: the patch's
     axes are those of the field's directions at the site that continue the patch's.
 
     Departure: the paper finds the quad of samples around a site and inverts it by a rule of two triangles (fig. 3c).
@@ -67,26 +67,27 @@ def _cells(
 def _surroundings(
     flow: Flow, samples: Samples, axis: Complex64[np.ndarray, "face 3"]
 ) -> tuple[
-    int,
+    Int32[np.ndarray, "face"],
     Int32[np.ndarray, "face"],
     Int32[np.ndarray, "entry"],
     Float32[np.ndarray, "entry 2"],
-    Float32[np.ndarray, "entry 2"],
+    Float32[np.ndarray, "framed 2"],
 ]:
-    """Sites around every face that holds a sample: the room for each face, how many of it are used, and which sites,
-    their places and their frames in the face's frame."""
-    face_count = len(flow.faces)
+    """Sites around every face that holds a sample: the first one's entry and their number, then for each entry the
+    site, its place and (for a symmetric field) its frame in the face's frame."""
+    face_count, nothing = len(flow.faces), np.empty(0, np.int32)
     wanted = np.zeros(face_count, np.uint8)
     wanted[samples.face[samples.face >= 0]] = 1
-    inputs = [flow.record, flow.twin, flow.faces, np.ascontiguousarray(axis).view(np.float32).reshape(-1, 3, 2), wanted]
-    count, room = np.empty(face_count, np.int32), 24
-    while True:
-        entries = face_count * room
-        found = np.empty(entries, np.int32), np.empty((entries, 2), np.float32), np.empty((entries, 2), np.float32)
-        launch(unfold_around, face_count, inputs=[*inputs, room], outputs=[count, *found])
-        if count.max(initial=0) <= room:
-            return room, count, *found
-        room = int(count.max())
+    frames = np.ascontiguousarray(axis).view(np.float32).reshape(-1, 3, 2)
+    inputs = [flow.record, flow.twin, flow.faces, frames, wanted, flow.order]
+    count, no_points = np.empty(face_count, np.int32), np.empty((0, 2), np.float32)
+    launch(unfold_around, face_count, inputs=[*inputs, nothing], outputs=[count, nothing, no_points, no_points])
+    ends = np.cumsum(count, dtype=np.int32)
+    total = int(ends[-1]) if face_count else 0
+    site, place = np.empty(total, np.int32), np.empty((total, 2), np.float32)
+    frame = np.empty((total if flow.order > 1 else 0, 2), np.float32)
+    launch(unfold_around, face_count, inputs=[*inputs, ends - count], outputs=[count, site, place, frame])
+    return ends - count, count, site, place, frame
 
 
 def _nearest(

@@ -9,8 +9,10 @@ from texloom.field.frames import VertexFrames
 from texloom.field.smooth import near
 from texloom.mesh.mesh import Mesh
 
-_REACH = 0.02  # of the diagonal: where the surface is fully anisotropic, smoothing reaches this far
-_BENT = 0.05  # of 1 / diagonal: a surface bent less than this counts as flat
+_REACH = 0.02  # of the diagonal: where the surface is fully anisotropic, smoothing reaches this far,
+_LEAST_REACH = 2.0  # and at least so many edges
+_ISOTROPIC = 0.1  # anisotropy up to which a direction is taken for noise
+_BENT = 0.05  # over the diagonal: a surface bent much less than this counts as flat
 
 
 def along_curvature(mesh: Mesh, order: int) -> DirectionField:
@@ -27,7 +29,8 @@ def along_curvature(mesh: Mesh, order: int) -> DirectionField:
     direction, anisotropy = _least_curvature(mesh)
     frames = VertexFrames(mesh, order)
     power = frames.powers(np.arange(len(mesh.vertices)), direction)
-    return near(mesh, order, power=power, weight=anisotropy**2 / (_REACH * mesh.diagonal) ** 2)
+    reach = max(_REACH * mesh.diagonal, _LEAST_REACH * float(mesh.edge_lengths.mean()))
+    return near(mesh, order, power=power, weight=np.where(anisotropy > _ISOTROPIC, anisotropy / reach, 0.0) ** 2)
 
 
 def _least_curvature(mesh: Mesh) -> tuple[Float64[np.ndarray, "vertex 3"], Float64[np.ndarray, "vertex"]]:

@@ -58,8 +58,8 @@ class Multigrid:
     ) -> Complex128[np.ndarray, "n"]:
         """The smoothest vector of every part: the eigenvector of least energy for the given mass, of unit length.
 
-        Inverse iteration from ``start``, first on the coarsest level. Among equally smooth vectors the result is the
-        one nearest to ``start``.
+        Inverse iteration from ``start``, first on the coarsest level; its energy is within a few percent of the least.
+        Among equally smooth vectors the result is near the one nearest to ``start``.
         """
         if self._prolongation is None:
             return self._iterate(start, mass, part, _INVERSE_STEPS)

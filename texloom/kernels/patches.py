@@ -97,9 +97,9 @@ def refine_anchors(
     reach: int,
     width: int,
     stride: int,  # compare every stride-th sample of every stride-th row
-    values: wp.array3d(dtype=float),
+    values: wp.array3d(dtype=wp.vec4),
     known: wp.array2d(dtype=float),
-    exemplar: wp.array3d(dtype=float),
+    exemplar: wp.array3d(dtype=wp.vec4),
     usable: wp.array2d(dtype=wp.uint8),
     best: wp.array3d(dtype=int),
     cost: wp.array2d(dtype=float),
@@ -112,6 +112,10 @@ def refine_anchors(
     item = start + wp.tid()
     p = item // anchors.shape[1]
     k = item - p * anchors.shape[1]
+    number = float(1.0e-6)
+    for r in range(0, width, stride):
+        for c in range(0, width, stride):
+            number += known[p, r * width + c]
     least = float(1.0e30)
     best[p, k, 0] = anchors[p, k, 0]
     best[p, k, 1] = anchors[p, k, 1]
@@ -122,23 +126,20 @@ def refine_anchors(
             if r0 >= 0 and c0 >= 0 and r0 < usable.shape[0] and c0 < usable.shape[1]:
                 if usable[r0, c0] != wp.uint8(0):
                     total = float(0.0)
-                    count = float(1.0e-6)
                     for r in range(0, width, stride):
-                        for c in range(r % stride, width, stride):
+                        for c in range(0, width, stride):
                             j = r * width + c
                             if known[p, j] > 0.0:
-                                count += 1.0
-                                for ch in range(exemplar.shape[2]):
-                                    d = exemplar[r0 + r, c0 + c, ch] - values[p, j, ch]
-                                    total += d * d
-                        if total > least * float(width * width):
+                                for g in range(exemplar.shape[2]):
+                                    d = exemplar[r0 + r, c0 + c, g] - values[p, j, g]
+                                    total += wp.dot(d, d)
+                        if total > least:
                             break
-                    mean = total / count
-                    if mean < least:
-                        least = mean
+                    if total < least:
+                        least = total
                         best[p, k, 0] = r0
                         best[p, k, 1] = c0
-    cost[p, k] = least
+    cost[p, k] = least / number
 
 
 @wp.func
@@ -150,9 +151,9 @@ def seam_cost(
     r0: int,
     c0: int,
     width: int,
-    values: wp.array3d(dtype=float),
+    values: wp.array3d(dtype=wp.vec4),
     known: wp.array2d(dtype=float),
-    exemplar: wp.array3d(dtype=float),
+    exemplar: wp.array3d(dtype=wp.vec4),
 ) -> float:
     """Squared difference of old and new colour at place (t, d) of the ring; nothing where there is no old colour."""
     r = ring[t, d, 0]
@@ -161,9 +162,9 @@ def seam_cost(
     if known[p, j] == 0.0:
         return 0.0
     total = float(1.0e-4)  # a seam through equal colours should still be short
-    for ch in range(exemplar.shape[2]):
-        e = exemplar[r0 + r, c0 + c, ch] - values[p, j, ch]
-        total += e * e
+    for g in range(exemplar.shape[2]):
+        e = exemplar[r0 + r, c0 + c, g] - values[p, j, g]
+        total += wp.dot(e, e)
     return total
 
 
@@ -171,23 +172,26 @@ def seam_cost(
 def cut_seams(
     start: int,
     ring: wp.array3d(dtype=int),  # (perimeter, depth, 2): sample [row, column] at each place of the unrolled border
-    anchors: wp.array2d(dtype=int),
+    anchors: wp.array3d(dtype=int),  # (patch, candidate, 2)
     width: int,
-    values: wp.array3d(dtype=float),
+    values: wp.array3d(dtype=wp.vec4),
     known: wp.array2d(dtype=float),
-    exemplar: wp.array3d(dtype=float),
-    path_cost: wp.array3d(dtype=float),  # (patch, 2, depth) scratch
-    step: wp.array3d(dtype=wp.int8),  # (patch, 2 perimeter, depth) scratch
-    seam: wp.array2d(dtype=int),
+    exemplar: wp.array3d(dtype=wp.vec4),
+    path_cost: wp.array3d(dtype=float),  # (patch candidate, 2, depth) scratch
+    step: wp.array3d(dtype=wp.int8),  # (patch candidate, 2 perimeter, depth) scratch
+    seam: wp.array3d(dtype=int),
+    cost: wp.array2d(dtype=float),
 ):
-    """seam[p, t] = depth at which the new patch begins, around its border: the closed path of least cost.
+    """seam[p, k, t] = depth at which patch p begins around its border, shown with candidate k: the cheapest closed path.
 
     Dynamic programming twice around the unrolled ring (the second lap forgets where the first began):
-    cost(t, d) = e(t, d) + min over |d' - d| <= 1 of cost(t - 1, d').
+    cost(t, d) = e(t, d) + min over |d' - d| <= 1 of cost(t - 1, d'). ``cost`` is that of one lap.
     """
-    p = start + wp.tid()
-    r0 = anchors[p, 0]
-    c0 = anchors[p, 1]
+    item = start + wp.tid()
+    p = item // anchors.shape[1]
+    k = item - p * anchors.shape[1]
+    r0 = anchors[p, k, 0]
+    c0 = anchors[p, k, 1]
     around = ring.shape[0]
     depth = ring.shape[1]
     for lap in range(2 * around):
@@ -198,26 +202,29 @@ def cut_seams(
             least = float(0.0)
             move = int(0)
             if lap > 0:
-                least = path_cost[p, before, d]
-                if d > 0 and path_cost[p, before, d - 1] < least:
-                    least = path_cost[p, before, d - 1]
-                    move = -1
-                if d < depth - 1 and path_cost[p, before, d + 1] < least:
-                    least = path_cost[p, before, d + 1]
-                    move = 1
-            path_cost[p, now, d] = least + seam_cost(ring, t, d, p, r0, c0, width, values, known, exemplar)
-            step[p, lap, d] = wp.int8(move)
+                least = path_cost[item, before, d]
+                if d > 0:
+                    if path_cost[item, before, d - 1] < least:
+                        least = path_cost[item, before, d - 1]
+                        move = -1
+                if d < depth - 1:
+                    if path_cost[item, before, d + 1] < least:
+                        least = path_cost[item, before, d + 1]
+                        move = 1
+            path_cost[item, now, d] = least + seam_cost(ring, t, d, p, r0, c0, width, values, known, exemplar)
+            step[item, lap, d] = wp.int8(move)
     at = int(0)
     last = (2 * around - 1) % 2
     for d in range(1, depth):
-        if path_cost[p, last, d] < path_cost[p, last, at]:
+        if path_cost[item, last, d] < path_cost[item, last, at]:
             at = d
+    cost[p, k] = 0.5 * path_cost[item, last, at]
     for back in range(2 * around):
         lap = 2 * around - 1 - back
         # Keep the middle of the two laps, where neither end of the path shows.
         if lap >= around // 2 and lap < around + around // 2:
-            seam[p, lap % around] = at
-        at += int(step[p, lap, at])
+            seam[p, k, lap % around] = at
+        at += int(step[item, lap, at])
 
 
 @wp.kernel(enable_backward=False)

@@ -10,7 +10,7 @@ MOST = wp.constant(96)  # faces unfolded around one face, and sites seen there
 Indices = wp.types.vector(length=96, dtype=wp.int32)
 Points = wp.types.vector(length=192, dtype=wp.float32)
 
-FAR = wp.constant(1.0)  # texels from a sample to the farthest site it can place
+FAR = wp.constant(0.92)  # texels from a sample to the farthest site it can place
 SIDE = wp.constant(0.65)  # half a cell, and enough to close the gaps where samples spread
 BORDER = wp.constant(0.5)  # half a cell, at the border of the patch
 
@@ -31,7 +31,8 @@ def unfold_around(
     faces: wp.array2d(dtype=int),
     axis: wp.array2d(dtype=wp.vec2),  # the site's frame at every face corner, in the face's frame
     wanted: wp.array(dtype=wp.uint8),
-    room: int,  # for sites of a face
+    order: int,
+    first: wp.array(dtype=int),  # where each face's sites go; empty to count only
     count: wp.array(dtype=int),
     site: wp.array(dtype=int),
     place: wp.array(dtype=wp.vec2),
@@ -39,7 +40,7 @@ def unfold_around(
 ):
     """Sites that a sample in face i can place, with their places and frames in the frame of i.
 
-    Breadth first over edges within reach of the face; ``count`` may exceed the room, which then has to grow.
+    Breadth first over edges within reach of the face. Frames are left out where the field has one direction only.
     """
     i = start + wp.tid()
     count[i] = 0
@@ -82,10 +83,12 @@ def unfold_around(
                 if k < MOST:
                     seen[seen_count] = v
                     seen_count = seen_count + 1
-                    if found < room:
-                        site[i * room + found] = v
-                        place[i * room + found] = p + middle
-                        frame[i * room + found] = times(turn, axis[f, c])
+                    if first.shape[0] > 0:
+                        e = first[i] + found
+                        site[e] = v
+                        place[e] = p + middle
+                        if order > 1:
+                            frame[e] = times(turn, axis[f, c])
                     found = found + 1
 
             halfedge = twin[f, c]
@@ -127,7 +130,7 @@ def sites_in_cells(
     record: wp.array2d(dtype=float),
     order: int,
     width: int,
-    room: int,
+    around_first: wp.array(dtype=int),
     around_count: wp.array(dtype=int),
     around_site: wp.array(dtype=int),
     around_place: wp.array(dtype=wp.vec2),
@@ -159,7 +162,7 @@ def sites_in_cells(
     way = wp.vec2(heading[s][0], heading[s][1])
     to_texels = conjugate(way) / texel_at(record, f, wp.vec3(at[0], at[1], at[2]))
     found = int(0)
-    for k in range(f * room, f * room + around_count[f]):
+    for k in range(around_first[f], around_first[f] + around_count[f]):
         p = times(to_texels, around_place[k] - here)
         if p[0] >= -left and p[0] <= right and -p[1] >= -up and -p[1] <= down and wp.length_sq(p) <= FAR * FAR:
             if first.shape[0] > 0:

@@ -117,7 +117,7 @@ def shade_pixels(
                     bump = 2.0 * pyramid_tap(bumps, level_first, rows, columns, level, at) - wp.vec3(1.0, 1.0, 1.0)
                     side = q[3] * wp.cross(normal, tangent)
                     normal = wp.normalize(bump[0] * tangent + bump[1] * side + bump[2] * normal)
-            if wp.dot(normal, view) < 0.0 and wp.dot(normal, view) < -0.2:
+            if wp.dot(normal, view) < -0.2:  # a back side; smooth normals may lean a little away at the outline
                 normal = -normal
             total += reflected(normal, view, albedo, key, fill, up, gloss)
             hits += 1.0

@@ -49,7 +49,7 @@ def project(vertices: Float[np.ndarray, "vertex 3"], camera: Camera, samples: in
     axes = _axes(camera)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     centre = (low + high) / 2
-    seen = ((vertices - centre) @ axes.T).astype(np.float32)
+    seen = (vertices - centre).astype(np.float32) @ axes.T.astype(np.float32)
     radius = max(float(np.sqrt(np.einsum("ij,ij->i", seen, seen).max())), 1e-30)
     half = np.tan(np.radians(camera.field_of_view) / 2)
     perspective = camera.field_of_view > 0

@@ -10,6 +10,7 @@ from jaxtyping import Float, Float64, Int, Int32
 from numpy.lib.stride_tricks import sliding_window_view
 
 _CELLS = 1024.0  # about a side of the square: fine enough for narrow gutters, coarse enough to be quick
+_FULL = 1.25  # the square may turn out this much larger
 _ANGLES = 24  # turns tried to find a chart's smallest box
 _TRIALS = 6
 
@@ -29,7 +30,7 @@ def pack_charts(
     flat = _boxed(_uprighted(flat, chart), chart)
     area = _areas(flat).sum()
     cells = flat * (0.75 * _CELLS / np.sqrt(max(area, 1e-300)))
-    pad = int(np.ceil(gutter * _CELLS / size / 2))
+    pad = int(np.ceil(gutter * _FULL * _CELLS / size / 2))
     outlines = _outlines(cells, chart, pad)
     places, width, height = _best_packing(outlines, float(_areas(cells).sum()))
     side = max(width, height)

@@ -49,7 +49,7 @@ def load_sources(path: str | Path) -> SavedSources:
     if not path.exists():
         raise FileError(f"{path}: no such file")
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
         raise FileError(f"{path.name} is not a file of sources, or is damaged: save the sources again") from error

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float32, Int32
 
-from texloom.arrays import Image
+from texloom.arrays import Image, fours
 from texloom.kernels.launch import launch
 from texloom.kernels.patches import refine_anchors
 
@@ -79,7 +79,16 @@ class BlockSearch:
         launch(
             refine_anchors,
             candidates.size,
-            inputs=[near, self.step // 2, self.width, self.stride, values, known, self.image, self.usable],
+            inputs=[
+                near,
+                self.step // 2,
+                self.width,
+                self.stride,
+                fours(values),
+                known,
+                fours(self.image),
+                self.usable,
+            ],
             outputs=[best, cost],
         )
         return best, cost

@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import Float32, Int32
 
 from texloom import draws
+from texloom.arrays import fours
 from texloom.domain.cover import group_by_site
 from texloom.domain.patches import Patches
 from texloom.exemplar.blas import single_threaded
@@ -28,7 +29,10 @@ from texloom.synthesis.usage import Usage
 
 _CHOICE = 0xB10C  # purpose of the draws that choose a block where nothing is known yet
 _TYPICAL = 200  # the typical mismatch is that of the best 1 / 200 of all candidates
+_LEAST = 1e-8  # mismatch taken for typical where everything fits, as on a constant sample
+_FINALISTS = 6  # candidates whose seams are cut
 _FLOOR = 0.7  # of the typical mismatch: fits better than this count alike
+_SEAM_FLOOR = 0.3  # of the finalists' mean seam cost, likewise
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +53,7 @@ class BlockGrowth:
         with single_threaded():  # products whose rounding does not follow the number of threads
             for done, chosen in enumerate(batches):
                 values, known = read(canvas, self.patches, chosen, samples)
-                anchors = self._choose(chosen, values, known, usage.excess())
-                seam = self._cut(anchors, values, known)
+                anchors, seam = self._choose(chosen, values, known, usage.excess())
                 self._paste(canvas, usage, chosen, anchors, seam)
                 report("blocks", (done + 1) / len(batches))
 
@@ -70,43 +73,54 @@ class BlockGrowth:
         values: Float32[np.ndarray, "patch sample channel"],
         known: Float32[np.ndarray, "patch sample"],
         excess: Float32[np.ndarray, "candidate"],
-    ) -> Int32[np.ndarray, "patch 2"]:
+    ) -> tuple[Int32[np.ndarray, "patch 2"], Int32[np.ndarray, "patch perimeter"]]:
         """The block that fits best where the canvas is coloured, a less used one among equals; any where it is bare."""
         coarse = self.search.coarse_cost(values, known)
         rank = min(max(coarse.shape[1] // _TYPICAL, 4), coarse.shape[1] - 1)
-        typical = np.partition(coarse, rank, axis=1)[:, rank, None]
+        typical = np.maximum(np.partition(coarse, rank, axis=1)[:, rank, None], _LEAST)
         bare = known.sum(1) == 0
         coarse[bare] = draws.uniform(
             self.seed, _CHOICE, index=(chosen[bare, None] * 65537 + np.arange(len(excess))).ravel()
         ).reshape(-1, len(excess))
         typical[bare] = 1.0
 
-        floor, price = _FLOOR * typical, self.balance * typical * excess**2
-        wish = np.maximum(coarse, floor) + price
+        price = self.balance * excess**2
+        wish = np.maximum(coarse / typical, _FLOOR) + price
         shortlist = min(self.search.shortlist, wish.shape[1])
         candidates = np.sort(np.argpartition(wish, shortlist - 1, axis=1)[:, :shortlist], axis=1).astype(np.int32)
         anchors, cost = self.search.refine(candidates, values, known)
         cost[bare] = np.take_along_axis(coarse[bare], candidates[bare], 1)
-        best = (np.maximum(cost, floor) + np.take_along_axis(price, candidates, 1)).argmin(1)
-        return np.ascontiguousarray(anchors[np.arange(len(chosen)), best])
+        wish = np.maximum(cost / typical, _FLOOR) + price[candidates]
+        finalists = np.argsort(wish, axis=1, kind="stable")[:, :_FINALISTS]
+        anchors = np.ascontiguousarray(np.take_along_axis(anchors, finalists[:, :, None], 1))
+        seam, seam_cost = self._cut(anchors, values, known)
+        usual = np.maximum(seam_cost.mean(1, keepdims=True), 1e-12)
+        wish = np.maximum(seam_cost / usual, _SEAM_FLOOR) + price[np.take_along_axis(candidates, finalists, 1)]
+        best = wish.argmin(1)
+        row = np.arange(len(chosen))
+        return np.ascontiguousarray(anchors[row, best]), np.ascontiguousarray(seam[row, best])
 
     def _cut(
         self,
-        anchors: Int32[np.ndarray, "patch 2"],
+        anchors: Int32[np.ndarray, "patch candidate 2"],
         values: Float32[np.ndarray, "patch sample channel"],
         known: Float32[np.ndarray, "patch sample"],
-    ) -> Int32[np.ndarray, "patch perimeter"]:
-        """How deep inside its border each new block begins."""
+    ) -> tuple[Int32[np.ndarray, "patch candidate perimeter"], Float32[np.ndarray, "patch candidate"]]:
+        """How deep inside its border each candidate block would begin, and what its seam would cost."""
         around, depth, _ = self.ring.samples.shape
-        seam = np.empty((len(anchors), around), np.int32)
-        scratch = np.empty((len(anchors), 2, depth), np.float32), np.empty((len(anchors), 2 * around, depth), np.int8)
+        count = anchors.shape[0] * anchors.shape[1]
+        seam, cost = np.empty((*anchors.shape[:2], around), np.int32), np.empty(anchors.shape[:2], np.float32)
+        scratch = np.empty((count, 2, depth), np.float32), np.empty((count, 2 * around, depth), np.int8)
         launch(
             cut_seams,
-            len(anchors),
-            inputs=[self.ring.samples, anchors, self.patches.width, values, known, self.search.image],
-            outputs=[*scratch, seam],
+            count,
+            inputs=[
+                *(self.ring.samples, anchors, self.patches.width),
+                *(fours(values), known, fours(self.search.image)),
+            ],
+            outputs=[*scratch, seam, cost],
         )
-        return seam
+        return seam, cost
 
     def _paste(
         self,

@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Int32
 
 from texloom import draws
+from texloom.arrays import in_fours
 from texloom.domain.cover import group_by_site
 from texloom.domain.domain import Domain
 from texloom.domain.patches import Patches
@@ -20,7 +21,7 @@ from texloom.progress import Report
 from texloom.search.analysis import Analysis, analyse
 from texloom.search.matching import Search
 from texloom.search.principal import PcaNearest
-from texloom.synthesis.canvas import Canvas, in_fours
+from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.layers import feathered
 from texloom.synthesis.least_squares import fill_unknown
 from texloom.synthesis.reading import read
@@ -69,7 +70,7 @@ class BoundarySampling:
         clock.append(time.perf_counter())
         result = self.solve(analysis, domain, laid, seed=seed, report=report)
         clock.append(time.perf_counter())
-        seconds = dict(zip(("analysis", "patches", "sampling"), np.diff(clock).tolist(), strict=True))
+        seconds: dict[str, float] = dict(zip(("analysis", "patches", "sampling"), np.diff(clock).tolist(), strict=True))
         return Result(result.sources, (), seconds, "done", result.patches)
 
     def analyse(self, exemplar: Exemplar) -> Analysis:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from texloom.arrays import Image
 from texloom.sources import SourceMap
 
 
@@ -35,13 +34,3 @@ class Canvas:
         """One source a site."""
         turn = self.turn[:, None] if self.turn.any() else None
         return SourceMap(self.position[:, None], np.ones((len(self.position), 1), np.float32), turn)
-
-
-def fours(values: Float32[np.ndarray, "*shape channel"]) -> Float32[np.ndarray, "*shape group 4"]:
-    """A view of the same values, four channels a vector, as kernels take them."""
-    return values.reshape(*values.shape[:-1], -1, 4)
-
-
-def in_fours(image: Image) -> Image:
-    """The image with channels of zeros added up to a multiple of four, so that kernels compare four at once."""
-    return np.ascontiguousarray(np.pad(image, ((0, 0), (0, 0), (0, -image.shape[2] % 4))))

@@ -10,14 +10,14 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int32, UInt8
 
 from texloom import draws
-from texloom.arrays import Image
+from texloom.arrays import Image, fours
 from texloom.domain.cover import group_by_site
 from texloom.domain.domain import Domain
 from texloom.domain.patches import Patches
 from texloom.kernels.correction import correct_sites
 from texloom.kernels.launch import launch
 from texloom.progress import Report
-from texloom.synthesis.canvas import Canvas, fours
+from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.reading import weights_of
 
 _SUBPASSES = 4  # a random quarter of the sites at a time, so that most see their neighbours corrected

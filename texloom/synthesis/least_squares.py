@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float32, Int32
 
 from texloom import draws
+from texloom.arrays import in_fours
 from texloom.domain.domain import Domain
 from texloom.domain.patches import Patches
 from texloom.errors import ParameterError
@@ -18,7 +19,7 @@ from texloom.progress import Report
 from texloom.search.analysis import Analysis, analyse
 from texloom.search.matching import Search
 from texloom.search.principal import PcaNearest
-from texloom.synthesis.canvas import Canvas, in_fours
+from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.layers import heaviest
 from texloom.synthesis.reading import read
 from texloom.synthesis.result import Result
@@ -41,7 +42,7 @@ class Stage:
 
 
 def stages(largest: int = 32) -> tuple[Stage, ...]:
-    """The schedule of section 4.4, figure 5: ¼:8, ½:16, ½:8, 1:32, 1:16, 1:8 for the paper's 32; 40 for large structure."""
+    """The schedule of section 4.4: ¼:8, ½:16, ½:8, 1:32, 1:16, 1:8 for the paper's 32; 40 serves large structure."""
     if largest % 4 or largest < 8:
         raise ParameterError(f"the largest patch is {largest} texels, but must be a multiple of 4, 8 or more")
     half, quarter = largest // 2, largest // 4

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import UInt8
 
+from texloom.arrays import in_fours
 from texloom.domain.domain import Domain
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Exemplar
@@ -13,7 +14,6 @@ from texloom.exemplar.features import match_image
 from texloom.exemplar.similarity import most_alike
 from texloom.progress import Report
 from texloom.search.blocks import BlockSearch
-from texloom.synthesis.canvas import in_fours
 from texloom.synthesis.correction import Correction, near_borders
 from texloom.synthesis.patches import PatchSampling
 from texloom.synthesis.result import Result
@@ -29,10 +29,10 @@ class Optimize:
     """
 
     start: PatchSampling = field(default_factory=PatchSampling)
-    width: int = 7  # texels per side of the neighbourhoods compared, odd
+    width: int = 5  # texels per side of the neighbourhoods compared, odd
     alike: int = 2  # k: alike texels tried beside the neighbours' own
-    passes: int = 3
-    reach: int = 4  # steps from the blocks' borders that are corrected
+    passes: int = 2
+    reach: int = 3  # steps from the blocks' borders that are corrected
 
     def __post_init__(self) -> None:
         if self.width < 3 or self.width % 2 == 0:

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Int32
 
 from texloom import draws
-from texloom.arrays import Image
+from texloom.arrays import Image, in_fours
 from texloom.domain.domain import Domain
 from texloom.domain.patches import Patches
 from texloom.errors import ExemplarError, ParameterError
@@ -17,7 +17,7 @@ from texloom.exemplar.features import match_image
 from texloom.progress import Report
 from texloom.search.blocks import BlockSearch
 from texloom.synthesis.blocks import BlockGrowth
-from texloom.synthesis.canvas import Canvas, in_fours
+from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.result import Result
 from texloom.synthesis.schedule import batches, breadth_first, overlaps
 from texloom.synthesis.seams import ring
@@ -39,7 +39,7 @@ class PatchSampling:
 
     patch: int | None = None  # texels per side; None: a quarter of the sample's shorter side, 16 to 64
     overlap: float = 1 / 3  # of the patch: how far neighbours overlap, and how deep seams may run
-    balance: float = 0.8  # typical mismatches a block pays for having had its fair share already
+    balance: float = 0.4  # typical mismatches a block pays for having had its fair share already
     order: Order = "scan"
 
     def __post_init__(self) -> None:

@@ -3,10 +3,11 @@
 import numpy as np
 from jaxtyping import Float32, Int32
 
+from texloom.arrays import fours
 from texloom.domain.patches import Patches
 from texloom.kernels.launch import launch
 from texloom.kernels.patches import read_patches
-from texloom.synthesis.canvas import Canvas, fours
+from texloom.synthesis.canvas import Canvas
 
 
 def read(
