@@ -23,8 +23,8 @@ def cover_of(flow: Flow, samples: Samples, width: int, axis: Complex64[np.ndarra
     ``axis`` is the site's frame at every face corner, as a direction in the face.
 
     The offset is measured in the sample's frame, on triangles laid flat around it: first order, exact where the field
-    is straight. Ties keep the lowest sample. Positions end half a texel outside the patch's outer samples, and 0.92
-    texels beyond a sample whose neighbour could not be traced. The turn is a multiple of ``2π / order``: the patch's
+    is straight. Ties keep the lowest sample. Positions end half a texel outside the patch's outer samples, and one
+    texel beyond a sample whose neighbour could not be traced. The turn is a multiple of ``2π / order``: the patch's
     axes are those of the field's directions at the site that continue the patch's.
 
     Departure: the paper finds the quad of samples around a site and inverts it by a rule of two triangles (fig. 3c).

@@ -74,6 +74,11 @@ class Surface:
         """Unit normals; ``normal × direction`` is the −row axis of each site's frame."""
         return self.refined.mesh.vertex_normals
 
+    @property
+    def edges(self) -> Int32[np.ndarray, "edge 2"]:
+        """Pairs of neighbouring sites."""
+        return self.refined.mesh.edges
+
     @cached_property
     def neighbours(self) -> tuple[Int32[np.ndarray, "sites_plus_one"], Int32[np.ndarray, "entry"]]:
         """Sites one edge away from each site, in compressed rows."""

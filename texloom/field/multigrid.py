@@ -2,8 +2,8 @@
 
 Small systems are factored. Larger ones are solved by conjugate gradients, preconditioned by smoothed aggregation
 (Vaněk et al. 1996; aggregates by distance-2 independent sets, Bell et al. 2012): neighbours are lumped, each turned by
-the connection into the frame of its lump's root, until the system is small. At 187 k vertices that takes a quarter
-of the time and a tenth of the memory of a sparse factorisation.
+the connection into the frame of its lump's root, until the system is small. At 187 k vertices setting up and
+solving took 1.0 s of CPU time, ordering (nested dissection) and factoring the same matrix 3.7 s.
 
 Sums run in a fixed order, so that the result is the same for any number of threads.
 """

@@ -13,6 +13,7 @@ from jaxtyping import Complex128, Float, Float64, Int
 from texloom.errors import FieldError
 from texloom.field.direction import DirectionField, check_order
 from texloom.field.frames import VertexFrames
+from texloom.field.multigrid import one_thread
 from texloom.field.smooth import near
 from texloom.mesh.mesh import Mesh
 
@@ -44,7 +45,7 @@ def scales(
     """The scales given at a few vertices, interpolated as logarithms and kept within their range."""
     weights, first = basis(mesh, vertices)
     logs = np.log(scales[first])
-    return np.exp(np.clip(weights @ logs, logs.min(), logs.max()))
+    return np.exp(np.clip((weights * logs).sum(axis=1), logs.min(), logs.max()))
 
 
 def basis(
@@ -69,7 +70,8 @@ def basis(
     system[:count, :count] = (between + between.T) / 2
     system[count, count] = 0.0
     rows = np.concatenate([distance, np.ones((len(distance), 1))], axis=1)
-    return np.linalg.solve(system, rows.T)[:count].T, first
+    with one_thread():
+        return np.linalg.solve(system, rows.T)[:count].T, first
 
 
 def _spread(frames: VertexFrames, vertex: int, direction: Float[np.ndarray, "3"]) -> Complex128[np.ndarray, "vertex"]:

@@ -94,7 +94,7 @@ def _biharmonic(mesh: Mesh, here: np.ndarray, places: np.ndarray, logs: np.ndarr
     matrix = np.ones((count + 1, count + 1))
     matrix[:count, :count], matrix[count, count] = responses[at], 0.0
     *weights, constant = np.linalg.solve(matrix, np.append(logs, 0.0))
-    return responses @ np.array(weights) + constant
+    return (responses * np.array(weights)).sum(axis=1) + constant
 
 
 def _balanced(
@@ -102,7 +102,7 @@ def _balanced(
 ) -> Float64[np.ndarray, "n"]:
     """The response of the Laplacian to a load that sums to 0, itself 0 in the mean."""
     response = np.real(system.solve(load.astype(complex), tolerance=_TOLERANCE))
-    return response - (mass @ response) / mass.sum()
+    return response - (mass * response).sum() / mass.sum()
 
 
 def _positive(scales: Float64[np.ndarray, "n"], what: str) -> Float64[np.ndarray, "n"]:

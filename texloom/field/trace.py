@@ -19,9 +19,10 @@ from texloom.mesh.mesh import Mesh
 class Flow:
     """Triangles between sites, with a direction field of symmetry ``order`` and the length of a texel.
 
-    ``record`` is what the kernels read of a triangle (``texloom.kernels.trace``): corners in its own 2-D frame, the
-    field's power and the length of a texel at its corners, the rotations into its neighbours' frames. ``position`` places sites in space (on a torus one of
-    many places, ``period`` apart; 0 is not periodic), only to compare nearby points.
+    ``record`` is what the kernels read of a triangle (``texloom.kernels.trace``): its corners in its own 2-D frame, the
+    field's power and the world length of a texel at them, the rotations into its neighbours' frames. ``position``
+    places sites in space (on a torus one of many places, ``period`` apart; 0 is not periodic), only to compare nearby
+    points.
     """
 
     order: int

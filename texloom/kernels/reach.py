@@ -10,7 +10,7 @@ MOST = wp.constant(96)  # faces unfolded around one face, and sites seen there
 Indices = wp.types.vector(length=96, dtype=wp.int32)
 Points = wp.types.vector(length=192, dtype=wp.float32)
 
-FAR = wp.constant(0.92)  # texels from a sample to the farthest site it can place
+FAR = wp.constant(1.0)  # texels from a sample to the farthest site it can place
 SIDE = wp.constant(0.65)  # half a cell, and enough to close the gaps where samples spread
 BORDER = wp.constant(0.5)  # half a cell, at the border of the patch
 

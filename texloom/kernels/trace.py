@@ -3,8 +3,8 @@
 A triangle's record holds, in its own 2-D frame (corner 0 at the origin, corner 1 at (a, 0), corner 2 at (b, c)):
 a, b, c; the n-th power of the field's direction at its corners, (re, im) each; the world length of a texel at its
 corners; the rotation across each edge into the next triangle's frame, (re, im) each. Points are barycentric, so they
-never leave their triangle; ``twin[f, e]`` is the halfedge ``3 f' + e'`` on the other side of edge e (corner e to e + 1),
--1 at a boundary. A walk that cannot go on ends in face -1.
+never leave their triangle; ``twin[f, e]`` is the halfedge ``3 f' + e'`` on the other side of edge e (corner e to the
+next), -1 at a boundary. A walk that cannot go on ends in face -1.
 """
 
 # ruff: noqa: UP018 (in a kernel int(0) declares a variable that a loop may change, 0 a constant)

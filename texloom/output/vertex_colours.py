@@ -62,7 +62,7 @@ def ply_bytes(
     vertices = np.empty(len(surface.vertices), properties)
     for axis in range(3):
         vertices["xyz"[axis]] = surface.vertices[:, axis]
-        vertices["n" + "xyz"[axis]] = surface.normal[:, axis]
+        vertices["n" + "xyz"[axis]] = surface.shown_normal[:, axis]
     stored = np.concatenate([encode(colours[:, :3]), np.clip(colours[:, 3:], 0, 1)], axis=1)
     for channel, name in enumerate(("red", "green", "blue", "alpha")):
         vertices[name] = np.rint(stored[:, channel] * 255)
@@ -93,7 +93,7 @@ def _glb(
     colour = np.rint(np.clip(colours, 0, 1) * 65535).astype("<u2")
     attributes = {
         "POSITION": draft.attribute(np.asarray(surface.vertices, "<f4")),
-        "NORMAL": draft.attribute(np.asarray(surface.normal, "<f4")),
+        "NORMAL": draft.attribute(np.asarray(surface.shown_normal, "<f4")),
         "COLOR_0": draft.attribute(colour, normalized=True),
     }
     if tangents:
