@@ -5,6 +5,7 @@ from typing import Protocol
 import numpy as np
 from jaxtyping import Float32, Int32
 
+from texloom.domain.neighbourhoods import Neighbourhoods
 from texloom.domain.patches import Patches
 
 
@@ -32,4 +33,8 @@ class Domain(Protocol):
 
     def patches(self, centres: Int32[np.ndarray, "patch"], width: int) -> Patches:
         """Patches of ``width × width`` samples around the given sites; built once, kept by the caller."""
+        ...
+
+    def neighbourhoods(self, sites: Int32[np.ndarray, "n"], reach: int) -> Neighbourhoods:
+        """The sites at most ``reach`` texels (rows and columns) from each given one."""
         ...

@@ -8,6 +8,7 @@ from jaxtyping import Complex64, Float, Float32, Float64, Int32
 
 from texloom import draws
 from texloom.domain.cover import group_by_site
+from texloom.domain.neighbourhoods import Neighbourhoods
 from texloom.domain.network import lay_patches
 from texloom.domain.patches import Patches
 from texloom.domain.scatter import scatter
@@ -123,6 +124,20 @@ class Grid:
     def _axis(self) -> Complex64[np.ndarray, "face 3"]:
         """Each site's frame in the faces around it: with one direction a site, the field itself."""
         return self.flow.power
+
+    def neighbourhoods(self, sites: Int32[np.ndarray, "n"], reach: int) -> Neighbourhoods:
+        """Squares of ``2 reach + 1`` texels a side, the middle one first; -1 outside a plane."""
+        side = np.arange(-reach, reach + 1, dtype=np.int32)
+        steps = np.stack(np.meshgrid(side, side, indexing="ij"), -1).reshape(-1, 2)
+        steps = steps[np.argsort(np.abs(steps).max(1), kind="stable")]
+        row, column = np.divmod(sites[:, None], np.int32(self.columns))
+        row, column = row + steps[:, 0], column + steps[:, 1]
+        if self.wrap:
+            around = row % np.int32(self.rows) * np.int32(self.columns) + column % np.int32(self.columns)
+        else:
+            inside = (row >= 0) & (row < self.rows) & (column >= 0) & (column < self.columns)
+            around = np.where(inside, row * np.int32(self.columns) + column, np.int32(-1))
+        return Neighbourhoods(around, steps[None].astype(np.float32))
 
     def _steps(
         self, centre: Int32[np.ndarray, "patch"], width: int, size: int

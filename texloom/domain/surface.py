@@ -6,12 +6,15 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Complex64, Float, Float32, Float64, Int32
 
+from texloom.domain.neighbourhoods import Neighbourhoods
 from texloom.domain.network import lay_patches
 from texloom.domain.patches import Patches
 from texloom.domain.scatter import scatter, site_neighbours
 from texloom.errors import FieldError, ParameterError
 from texloom.field.direction import DirectionField, carry, corner_directions, vertex_directions
 from texloom.field.trace import Flow, surface_flow
+from texloom.kernels.launch import launch
+from texloom.kernels.neighbourhoods import spread
 from texloom.mesh.mesh import Mesh
 from texloom.mesh.refine import Refined, refine
 
@@ -101,6 +104,24 @@ class Surface:
     def patches(self, centres: Int32[np.ndarray, "patch"], width: int) -> Patches:
         """Patches traced along the field and its orthogonal; they end at boundaries and singularities."""
         return lay_patches(self.flow, centres, width, axis=self.axis)
+
+    def neighbourhoods(self, sites: Int32[np.ndarray, "n"], reach: int) -> Neighbourhoods:
+        """Sites nearby by walking along edges, laid into the tangent plane; the nearest where there are many."""
+        most = (2 * reach + 1) ** 2
+        shape = (len(sites), most)
+        found, offset = np.empty(shape, np.int32), np.empty((*shape, 2), np.float32)
+        turn = np.empty(shape, np.float32)
+        place = self.refined.mesh.vertices - self.refined.mesh.vertices.mean(0)
+        launch(
+            spread,
+            len(sites),
+            inputs=[
+                *(sites, *self.neighbours, place.astype(np.float32), self.direction.astype(np.float32)),
+                *(self.normal.astype(np.float32), self.texel_length.astype(np.float32), float(reach) + 0.5),
+            ],
+            outputs=[found, offset, turn],
+        )
+        return Neighbourhoods(found, offset, turn if self.field.order > 1 else None)
 
 
 def texel_for_repeats(mesh: Mesh, repeats: float, sample_width: int) -> float:

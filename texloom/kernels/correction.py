@@ -2,7 +2,8 @@
 
 import warp as wp
 
-from texloom.kernels.patches import read_sample
+NEAR = wp.constant(2.5)  # squared texels: how near the neighbours are whose sources are tried
+SKEW = wp.constant(0.5)  # radians: sources turned more than this against the middle site cannot be continued there
 
 
 @wp.func
@@ -10,35 +11,34 @@ def mismatch(
     exemplar: wp.array3d(dtype=wp.vec4),
     row: float,
     column: float,
-    width: int,
-    values: wp.array3d(dtype=wp.vec4),
-    known: wp.array2d(dtype=float),
+    sites: wp.array2d(dtype=int),
+    offset: wp.array3d(dtype=float),
+    shape: int,
     i: int,
+    colour: wp.array2d(dtype=wp.vec4),
     limit: float,
 ) -> float:
-    """Sum over known samples of |exemplar - values[i]|^2, the patch's corner at (row, column); stops past ``limit``.
-
-    All samples share one fraction of a texel, so the four bilinear weights are computed once.
-    """
-    r0 = int(wp.floor(row))
-    c0 = int(wp.floor(column))
-    fr = row - float(r0)
-    fc = column - float(c0)
-    whole = fr == 0.0 and fc == 0.0
+    """Sum over the neighbours s of site i of |exemplar((row, column) + offset_s) - colour_s|^2; stops past ``limit``."""
     total = float(0.0)
-    for r in range(width):
-        for c in range(width):
-            j = r * width + c
+    for k in range(sites.shape[1]):
+        site = sites[i, k]
+        if site >= 0:
+            y = row + offset[shape, k, 0]
+            x = column + offset[shape, k, 1]
+            r = int(wp.floor(y))
+            c = int(wp.floor(x))
+            fr = y - float(r)
+            fc = x - float(c)
             for g in range(exemplar.shape[2]):
-                value = exemplar[r0 + r, c0 + c, g]
-                if not whole:
-                    value = (1.0 - fr) * ((1.0 - fc) * value + fc * exemplar[r0 + r, c0 + c + 1, g]) + fr * (
-                        (1.0 - fc) * exemplar[r0 + r + 1, c0 + c, g] + fc * exemplar[r0 + r + 1, c0 + c + 1, g]
+                value = exemplar[r, c, g]
+                if fr > 0.0 or fc > 0.0:
+                    value = (1.0 - fr) * ((1.0 - fc) * value + fc * exemplar[r, c + 1, g]) + fr * (
+                        (1.0 - fc) * exemplar[r + 1, c, g] + fc * exemplar[r + 1, c + 1, g]
                     )
-                d = value - values[i, j, g]
-                total += known[i, j] * wp.dot(d, d)
-        if total > limit:
-            break
+                d = value - colour[site, g]
+                total += wp.dot(d, d)
+            if total > limit:
+                break
     return total
 
 
@@ -63,92 +63,81 @@ def is_usable(usable: wp.array2d(dtype=wp.uint8), row: float, column: float) -> 
     return usable[r, c] != wp.uint8(0)
 
 
-NEAR = wp.constant(2.5)  # squared texels: how near the neighbours are whose sources are tried
-SKEW = wp.constant(0.5)  # radians: sources turned more than this against the patch cannot be continued in it
-
-
 @wp.kernel(enable_backward=False)
 def correct_sites(
     start: int,
-    chosen: wp.array(dtype=int),  # patches to correct, each around its own site
-    centres: wp.array(dtype=int),
-    width: int,
-    entry_start: wp.array(dtype=int),  # cover entries by patch
-    entries: wp.array(dtype=int),
-    entry_site: wp.array(dtype=int),
-    entry_position: wp.array2d(dtype=float),
-    entry_turn: wp.array(dtype=float),  # one element where no patch is turned
-    sites: wp.array3d(dtype=int),
-    weights: wp.array3d(dtype=float),
+    chosen: wp.array(dtype=int),  # which neighbourhoods
+    sites: wp.array2d(dtype=int),  # (neighbourhood, k): the middle site first, -1 none
+    offset: wp.array3d(dtype=float),  # (neighbourhood or 1, k, 2)
+    turned: wp.array2d(dtype=float),  # (neighbourhood, k), or (1, 1) where no frame is turned
+    position: wp.array2d(dtype=float),
+    turn: wp.array(dtype=float),
     colour: wp.array2d(dtype=wp.vec4),  # channels in fours
     label: wp.array(dtype=int),
     changed: wp.array(dtype=int),  # when each site last changed
-    visited: wp.array(dtype=int),  # when each patch's own site was last corrected
-    position: wp.array2d(dtype=float),
-    turn: wp.array(dtype=float),
+    visited: wp.array(dtype=int),  # when each neighbourhood was last corrected
     exemplar: wp.array3d(dtype=wp.vec4),
     usable: wp.array2d(dtype=wp.uint8),
     similar: wp.array4d(dtype=int),  # (row, column, k, 2): texels most like each texel
-    values: wp.array3d(dtype=wp.vec4),  # (chosen, sample, group) scratch
-    known: wp.array2d(dtype=float),  # (chosen, sample) scratch
     tried: wp.array3d(dtype=float),  # (chosen, candidate, 2) scratch; no more candidates than fit are compared
     found: wp.array2d(dtype=float),
     cost: wp.array(dtype=float),
 ):
-    """found[i] = argmin over candidates q of mean_j |exemplar[q + offset_j] - values[i, j]|^2.
+    """found[i] = argmin over candidates q of mean_k |exemplar(q + offset_k) - colour_k|^2.
 
-    A patch none of whose sites changed since its last visit is passed over: it would find the same. ``cost`` is by
-    patch and keeps what it was then. Candidates are the sources of the sites in the patch, each moved by the site's offset to the centre (coherence),
-    and the texels similar to those of the nearest sites (k-coherence). Ties keep the first.
+    Candidates are the sources of the middle site and of those next to it, each moved by their offset (coherence), and
+    the texels similar to the middle site's (k-coherence). Ties keep the first. A neighbourhood none of whose sites
+    changed since its last visit is passed over: it would find the same. ``cost`` is by neighbourhood.
     """
     i = start + wp.tid()
-    patch = chosen[i]
-    middle = float(width // 2)
+    own = chosen[i]
+    middle = sites[own, 0]
+    found[i, 0] = position[middle, 0]
+    found[i, 1] = position[middle, 1]
+    latest = int(-1)
+    number = float(0.0)
+    for k in range(sites.shape[1]):
+        if sites[own, k] >= 0:
+            latest = wp.max(latest, changed[sites[own, k]])
+            number += 1.0
+    if latest < visited[own]:
+        return
+    shape = wp.min(own, offset.shape[0] - 1)
     count = int(0)
     best = float(1.0e30)
-    own = centres[patch]
-    found[i, 0] = position[own, 0]
-    found[i, 1] = position[own, 1]
-    latest = int(-1)
-    for e in range(entry_start[patch], entry_start[patch + 1]):
-        latest = wp.max(latest, changed[entry_site[entries[e]]])
-    if latest < visited[patch]:
-        return
-    number = float(1.0e-6)
-    for j in range(width * width):
-        known[i, j] = read_sample(patch, j, sites, weights, colour, label, i, j, values)
-        number += known[i, j]
-    for e in range(entry_start[patch], entry_start[patch + 1]):
-        entry = entries[e]
-        dr = entry_position[entry, 0] - middle
-        dc = entry_position[entry, 1] - middle
-        if dr * dr + dc * dc < NEAR:
-            site = entry_site[entry]
-            straight = int(1)
-            if entry_turn.shape[0] > 1:
-                if wp.abs(turn[site] - entry_turn[entry]) > SKEW:
-                    straight = 0
-            guesses = straight
-            if site == own:
-                guesses = straight * (1 + similar.shape[2])
-            for guess in range(guesses):
-                row = position[site, 0]
-                column = position[site, 1]
-                if guess > 0:
-                    r = int(wp.round(row))
-                    c = int(wp.round(column))
-                    row = row + float(similar[r, c, guess - 1, 0] - r)
-                    column = column + float(similar[r, c, guess - 1, 1] - c)
-                row = row - dr
-                column = column - dc
-                if is_new(tried, i, count, row, column) and is_usable(usable, row, column):
-                    tried[i, count, 0] = row
-                    tried[i, count, 1] = column
-                    count += 1
-                    total = mismatch(exemplar, row - middle, column - middle, width, values, known, i, best)
-                    if total < best:
-                        best = total
-                        found[i, 0] = row
-                        found[i, 1] = column
+    for k in range(sites.shape[1]):
+        site = sites[own, k]
+        dr = offset[shape, k, 0]
+        dc = offset[shape, k, 1]
+        straight = int(0)
+        if site >= 0 and dr * dr + dc * dc < NEAR:
+            if label[site] >= 0:
+                straight = 1
+                if turned.shape[1] > 1:
+                    # The source's axes against the middle site's frame: its turn there, less the frames' own.
+                    if wp.abs(turn[site] - turned[own, k]) > SKEW:
+                        straight = 0
+        guesses = straight
+        if k == 0:
+            guesses = straight * (1 + similar.shape[2])
+        for guess in range(guesses):
+            row = position[site, 0]
+            column = position[site, 1]
+            if guess > 0:
+                r = int(wp.round(row))
+                c = int(wp.round(column))
+                row = row + float(similar[r, c, guess - 1, 0] - r)
+                column = column + float(similar[r, c, guess - 1, 1] - c)
+            row = row - dr
+            column = column - dc
+            if is_new(tried, i, count, row, column) and is_usable(usable, row, column):
+                tried[i, count, 0] = row
+                tried[i, count, 1] = column
+                count += 1
+                total = mismatch(exemplar, row, column, sites, offset, shape, own, colour, best)
+                if total < best:
+                    best = total
+                    found[i, 0] = row
+                    found[i, 1] = column
     if count > 0:
-        cost[patch] = best / number
+        cost[own] = best / number

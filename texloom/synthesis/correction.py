@@ -11,14 +11,12 @@ from jaxtyping import Bool, Float32, Int32, UInt8
 
 from texloom import draws
 from texloom.arrays import Image, fours
-from texloom.domain.cover import group_by_site
 from texloom.domain.domain import Domain
-from texloom.domain.patches import Patches
+from texloom.domain.neighbourhoods import Neighbourhoods
 from texloom.kernels.correction import correct_sites
 from texloom.kernels.launch import launch
 from texloom.progress import Report
 from texloom.synthesis.canvas import Canvas
-from texloom.synthesis.reading import weights_of
 
 _SUBPASSES = 4  # a random quarter of the sites at a time, so that most see their neighbours corrected
 _CANDIDATES = 12  # distinct ones compared at most; near a border there are two to eight
@@ -33,72 +31,66 @@ class Correction:
     image: Image  # channels a multiple of four
     usable: UInt8[np.ndarray, "row column"]  # 1 where a neighbourhood may be centred
     similar: Int32[np.ndarray, "row column k 2"]
-    width: int  # of the neighbourhoods, odd
+    reach: int  # texels: neighbourhoods are 2 reach + 1 wide
 
     def run(
         self, canvas: Canvas, domain: Domain, sites: Int32[np.ndarray, "n"], *, passes: int, seed: int, report: Report
     ) -> list[float]:
         """Correct ``sites`` that often; returns the mean squared difference that each pass leaves."""
-        work = _Work.around(domain.patches(sites, self.width), domain.count)
+        around = domain.neighbourhoods(sites, self.reach)
+        visits = _Visits(np.zeros(domain.count, np.int32), np.zeros(len(sites), np.int32))
+        cost = np.zeros(len(sites), np.float32)
         part = draws.bits(seed, _PART, index=sites) % _SUBPASSES
         energy = []
         for turn in range(passes):
             for subpass in range(_SUBPASSES):
                 chosen = np.flatnonzero(part == subpass).astype(np.int32)
-                self._correct(canvas, work, chosen, now=1 + turn * _SUBPASSES + subpass)
-            energy.append(float(work.cost.mean(dtype=np.float64)) if len(sites) else 0.0)
+                self._correct(canvas, around, visits, chosen, cost, now=1 + turn * _SUBPASSES + subpass)
+            energy.append(float(cost.mean(dtype=np.float64)) if len(sites) else 0.0)
             report("correction", (turn + 1) / passes)
         return energy
 
-    def _correct(self, canvas: Canvas, work: "_Work", chosen: Int32[np.ndarray, "patch"], *, now: int) -> None:
-        """All chosen sites at once, from what the canvas shows now."""
-        patches, turn = work.patches, work.patches.cover_turn
+    def _correct(
+        self,
+        canvas: Canvas,
+        around: Neighbourhoods,
+        visits: "_Visits",
+        chosen: Int32[np.ndarray, "chosen"],
+        cost: Float32[np.ndarray, "n"],
+        *,
+        now: int,
+    ) -> None:
+        """All chosen neighbourhoods at once, from what the canvas shows now."""
         found = np.empty((len(chosen), 2), np.float32)
-        values = np.empty((len(chosen), self.width**2, self.image.shape[2]), np.float32)
-        known = np.empty(values.shape[:2], np.float32)
         tried = np.empty((len(chosen), _CANDIDATES, 2), np.float32)
         launch(
             correct_sites,
             len(chosen),
             inputs=[
-                *(chosen, patches.centres, self.width, *work.entries, work.site_of_entry, patches.cover_position),
-                np.zeros(1, np.float32) if turn is None else turn,
-                *(patches.sites, weights_of(patches), fours(canvas.colour), canvas.label, work.changed, work.visited),
-                *(canvas.position, canvas.turn, fours(self.image), self.usable, self.similar),
+                *(chosen, around.sites, around.offset),
+                np.zeros((1, 1), np.float32) if around.turn is None else around.turn,
+                *(canvas.position, canvas.turn, fours(canvas.colour), canvas.label, visits.changed, visits.visited),
+                *(fours(self.image), self.usable, self.similar),
             ],
-            outputs=[fours(values), known, tried, found, work.cost],
+            outputs=[tried, found, cost],
         )
-        work.visited[chosen] = now
-        site = patches.centres[chosen]
+        visits.visited[chosen] = now
+        site = around.sites[chosen, 0]
         moved = (canvas.position[site] != found).any(1) & (np.abs(canvas.turn[site]) < _SKEW)
         site, found = site[moved], found[moved]
-        work.changed[site] = now
+        visits.changed[site] = now
         canvas.position[site] = found
+        canvas.label[site] = np.maximum(canvas.label[site], 0)
         texel = np.rint(found).astype(np.int32)
         canvas.colour[site] = self.image[texel[:, 0], texel[:, 1]]
 
 
 @dataclass(frozen=True, eq=False)
-class _Work:
-    """Neighbourhoods around the sites to correct, and what is known of each visit."""
+class _Visits:
+    """The subpass in which each site last changed, and in which each neighbourhood was last corrected."""
 
-    patches: Patches
-    entries: tuple[Int32[np.ndarray, "patches_plus_one"], Int32[np.ndarray, "entry"]]
-    site_of_entry: Int32[np.ndarray, "entry"]
-    changed: Int32[np.ndarray, "site"]  # the subpass in which a site last changed
-    visited: Int32[np.ndarray, "patch"]  # the subpass in which a patch was last visited
-    cost: Float32[np.ndarray, "patch"]
-
-    @staticmethod
-    def around(patches: Patches, count: int) -> "_Work":
-        return _Work(
-            patches,
-            group_by_site(patches.cover_patch, patches.count),
-            np.repeat(np.arange(count, dtype=np.int32), np.diff(patches.cover_start)),
-            np.zeros(count, np.int32),
-            np.zeros(patches.count, np.int32),
-            np.zeros(patches.count, np.float32),
-        )
+    changed: Int32[np.ndarray, "site"]
+    visited: Int32[np.ndarray, "n"]
 
 
 def near_borders(canvas: Canvas, domain: Domain, reach: int) -> Bool[np.ndarray, "site"]:

@@ -48,7 +48,7 @@ class Optimize:
         clock.append(time.perf_counter())
         canvas, count, seconds = self.start.lay(exemplar, image, domain, seed=seed, report=report)
         clock.append(time.perf_counter())
-        correction = Correction(image, self._usable(image, exemplar), similar, self.width)
+        correction = Correction(image, self._usable(image, exemplar), similar, self.width // 2)
         sites = np.flatnonzero(near_borders(canvas, domain, self.reach)).astype(np.int32)
         energy = correction.run(canvas, domain, sites, passes=self.passes, seed=seed, report=report)
         clock.append(time.perf_counter())
