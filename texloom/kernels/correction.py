@@ -3,7 +3,7 @@
 import warp as wp
 
 NEAR = wp.constant(2.5)  # squared texels: how near the neighbours are whose sources are tried
-SKEW = wp.constant(0.5)  # radians: sources turned more than this against the middle site cannot be continued there
+SKEW = wp.constant(0.87)  # cosine: sources turned more than 30° against the middle site cannot be continued there
 
 
 @wp.func
@@ -18,13 +18,18 @@ def mismatch(
     colour: wp.array2d(dtype=wp.vec4),
     limit: float,
 ) -> float:
-    """Sum over the neighbours s of site i of |exemplar((row, column) + offset_s) - colour_s|^2; stops past ``limit``."""
+    """Sum over the neighbours s of site i of |exemplar((row, column) + offset_s) - colour_s|^2; stops past ``limit``.
+
+    Offsets may reach half a texel farther than whole ones do: what lies outside the exemplar reads its border.
+    """
     total = float(0.0)
+    bottom = float(exemplar.shape[0] - 1)
+    right = float(exemplar.shape[1] - 1)
     for k in range(sites.shape[1]):
         site = sites[i, k]
         if site >= 0:
-            y = row + offset[shape, k, 0]
-            x = column + offset[shape, k, 1]
+            y = wp.clamp(row + offset[shape, k, 0], 0.0, bottom)
+            x = wp.clamp(column + offset[shape, k, 1], 0.0, right)
             r = int(wp.floor(y))
             c = int(wp.floor(x))
             fr = y - float(r)
@@ -32,8 +37,10 @@ def mismatch(
             for g in range(exemplar.shape[2]):
                 value = exemplar[r, c, g]
                 if fr > 0.0 or fc > 0.0:
-                    value = (1.0 - fr) * ((1.0 - fc) * value + fc * exemplar[r, c + 1, g]) + fr * (
-                        (1.0 - fc) * exemplar[r + 1, c, g] + fc * exemplar[r + 1, c + 1, g]
+                    r1 = wp.min(r + 1, exemplar.shape[0] - 1)
+                    c1 = wp.min(c + 1, exemplar.shape[1] - 1)
+                    value = (1.0 - fr) * ((1.0 - fc) * value + fc * exemplar[r, c1, g]) + fr * (
+                        (1.0 - fc) * exemplar[r1, c, g] + fc * exemplar[r1, c1, g]
                     )
                 d = value - colour[site, g]
                 total += wp.dot(d, d)
@@ -115,7 +122,7 @@ def correct_sites(
                 straight = 1
                 if turned.shape[1] > 1:
                     # The source's axes against the middle site's frame: its turn there, less the frames' own.
-                    if wp.abs(turn[site] - turned[own, k]) > SKEW:
+                    if wp.cos(turn[site] - turned[own, k]) < SKEW:
                         straight = 0
         guesses = straight
         if k == 0:
@@ -124,8 +131,9 @@ def correct_sites(
             row = position[site, 0]
             column = position[site, 1]
             if guess > 0:
-                r = int(wp.round(row))
-                c = int(wp.round(column))
+                # Sources may lie up to a texel outside the exemplar, where a patch's outer samples show its border.
+                r = wp.clamp(int(wp.round(row)), 0, similar.shape[0] - 1)
+                c = wp.clamp(int(wp.round(column)), 0, similar.shape[1] - 1)
                 row = row + float(similar[r, c, guess - 1, 0] - r)
                 column = column + float(similar[r, c, guess - 1, 1] - c)
             row = row - dr

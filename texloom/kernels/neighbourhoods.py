@@ -61,3 +61,6 @@ def spread(
         at += 1
     for k in range(count, most):
         sites[i, k] = -1
+        offset[i, k, 0] = 0.0
+        offset[i, k, 1] = 0.0
+        turn[i, k] = 0.0

@@ -84,7 +84,7 @@ class BoundarySampling:
         """The patches and their order."""
         patches = domain.patches(domain.centres(self.patch / 2, seed), self.patch)
         shared = overlaps(patches)
-        order = breadth_first(shared) if self.order == "breadth-first" else None
+        order = breadth_first(shared, seed) if self.order == "breadth-first" else None
         if order is None:
             order = draws.permutation(seed, _ORDER, count=patches.count).astype(np.int32)
         return Laid(patches, batches(order, shared))
@@ -110,7 +110,7 @@ class BoundarySampling:
             report("sampling", (number + 1) / len(self.steps))
         rank = np.empty(patches.count, np.int32)
         rank[np.concatenate(laid.groups)] = np.arange(patches.count, dtype=np.int32)
-        return Result(feathered(patches, anchors, rank, self.zone), patches=patches.count)
+        return Result(feathered(domain, patches, anchors, rank, self.zone), patches=patches.count)
 
     def _lay_level(self, analysis: Analysis, laid: Laid, canvas: Canvas, appearance, anchors, step: int) -> None:
         """Match and paste every batch on one level."""

@@ -5,7 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float32, Int32
 
+from texloom.arrays import Image
+from texloom.domain.domain import Domain
 from texloom.sources import SourceMap
+from texloom.synthesis.gaps import fill_gaps
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +32,15 @@ class Canvas:
             np.full(count, -1, np.int32),
             np.zeros(count, np.float32),
         )
+
+    def close(self, domain: Domain, image: Image) -> None:
+        """Continue the texture over sites that no patch reached."""
+        bare = self.label < 0
+        fill_gaps(domain, ~bare, self.position, self.turn)
+        texel = np.rint(self.position[bare]).astype(np.int32)
+        texel = np.clip(texel, 0, np.array(image.shape[:2]) - 1)
+        self.colour[bare] = image[texel[:, 0], texel[:, 1]]
+        self.label[bare] = np.iinfo(np.int32).max  # a patch of its own, so that correction visits its border
 
     def sources(self) -> SourceMap:
         """One source a site."""

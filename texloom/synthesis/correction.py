@@ -21,7 +21,7 @@ from texloom.synthesis.canvas import Canvas
 _SUBPASSES = 4  # a random quarter of the sites at a time, so that most see their neighbours corrected
 _CANDIDATES = 12  # distinct ones compared at most; near a border there are two to eight
 _PART = 0xC0  # purpose of the draws that part the sites
-_SKEW = 0.5  # radians: a site whose source is turned more than this keeps it
+_SKEW = 0.87  # cosine: a site whose source is turned more than 30° keeps it
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +76,10 @@ class Correction:
         )
         visits.visited[chosen] = now
         site = around.sites[chosen, 0]
-        moved = (canvas.position[site] != found).any(1) & (np.abs(canvas.turn[site]) < _SKEW)
+        moved = (canvas.position[site] != found).any(1) & (np.cos(canvas.turn[site]) > _SKEW)
         site, found = site[moved], found[moved]
         visits.changed[site] = now
         canvas.position[site] = found
-        canvas.label[site] = np.maximum(canvas.label[site], 0)
         texel = np.rint(found).astype(np.int32)
         canvas.colour[site] = self.image[texel[:, 0], texel[:, 1]]
 

@@ -131,7 +131,7 @@ class LeastSquares:
                 stopped = "iterations"
             anchors = np.ascontiguousarray(vectors.anchors[found])
         count = sum(laid[stage.extent].count for stage in self.schedule)
-        sources = heaviest(laid[stage.extent], anchors * np.int32(stage.step), weight, 1.0)
+        sources = heaviest(domain, laid[stage.extent], anchors * np.int32(stage.step), weight, 1.0)
         return Result(sources, tuple(energy), {}, stopped, count)
 
     def _samples(self, stage: Stage) -> Int32[np.ndarray, "sample 2"]:

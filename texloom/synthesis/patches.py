@@ -40,7 +40,7 @@ class PatchSampling:
     patch: int | None = None  # texels per side; None: a quarter of the sample's shorter side, 16 to 64
     overlap: float = 1 / 3  # of the patch: how far neighbours overlap, and how deep seams may run
     balance: float = 0.4  # typical mismatches a block pays for having had its fair share already
-    order: Order = "scan"
+    order: Order = "breadth-first"
 
     def __post_init__(self) -> None:
         if self.patch is not None and self.patch < 2 * _STEP:
@@ -74,6 +74,7 @@ class PatchSampling:
         canvas = Canvas.empty(domain.count, image.shape[2])
         growth = BlockGrowth(patches, search, ring(width, depth), domain.area, self.balance, seed)
         growth.run(canvas, groups, report)
+        canvas.close(domain, image)
         return canvas, patches.count, seconds
 
     def width_for(self, exemplar: Exemplar) -> int:
@@ -87,5 +88,5 @@ class PatchSampling:
         if self.order == "random":
             return draws.permutation(seed, count=patches.count).astype(np.int32)
         if self.order == "breadth-first":
-            return breadth_first(shared)
+            return breadth_first(shared, seed)
         return np.arange(patches.count, dtype=np.int32)

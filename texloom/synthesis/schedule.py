@@ -3,7 +3,10 @@
 import numpy as np
 from jaxtyping import Bool, Int32
 
+from texloom import draws
 from texloom.domain.patches import Patches
+
+_TIES = 0x71E5  # purpose of the draws that order equals
 
 
 def overlaps(patches: Patches) -> Bool[np.ndarray, "patch patch"]:
@@ -27,17 +30,18 @@ def batches(order: Int32[np.ndarray, "patch"], shared: Bool[np.ndarray, "patch p
     return np.split(by_group.astype(np.int32), np.flatnonzero(np.diff(group[by_group])) + 1)
 
 
-def breadth_first(shared: Bool[np.ndarray, "patch patch"], start: int = 0) -> Int32[np.ndarray, "patch"]:
-    """Patches by hops from ``start`` through overlaps; other parts of the domain follow, each from its first patch."""
-    hops = np.full(len(shared), -1)
+def breadth_first(shared: Bool[np.ndarray, "patch patch"], seed: int) -> Int32[np.ndarray, "patch"]:
+    """Patches by hops from the first through overlaps, in random order among equals so that many can be laid at once.
+
+    Other parts of the domain follow, each from its first patch.
+    """
+    rank = draws.permutation(seed, _TIES, count=len(shared))
+    left = np.ones(len(shared), bool)
     order: list[np.ndarray] = []
-    front = np.array([start])
-    while True:
-        hops[front] = 1
-        order.append(front)
-        front = np.flatnonzero(shared[front].any(0) & (hops < 0))
-        if not len(front):
-            rest = np.flatnonzero(hops < 0)
-            if not len(rest):
-                return np.concatenate(order).astype(np.int32)
-            front = rest[:1]
+    while left.any():
+        front = np.flatnonzero(left)[:1]
+        while len(front):
+            left[front] = False
+            order.append(front[np.argsort(rank[front])])
+            front = np.flatnonzero(shared[front].any(0) & left)
+    return np.concatenate(order).astype(np.int32)

@@ -1,0 +1,43 @@
+"""Sites that no patch reached, at singularities and narrow boundaries: their neighbours' sources are continued."""
+
+import numpy as np
+from jaxtyping import Bool, Float32
+
+from texloom.domain.domain import Domain
+
+
+def fill_gaps(
+    domain: Domain,
+    known: Bool[np.ndarray, "site"],
+    position: Float32[np.ndarray, "site 2"],
+    turn: Float32[np.ndarray, "site"],
+) -> None:
+    """Give every unknown site the source of the nearest known one beside it, moved by the offset; outwards, in place.
+
+    Parts of the domain where nothing is known keep what they have.
+    """
+    known = known.copy()
+    missing = np.flatnonzero(~known).astype(np.int32)
+    while len(missing):
+        around = domain.neighbourhoods(missing, 1)
+        usable = (around.sites >= 0) & known[around.sites]
+        offset = np.broadcast_to(around.offset, (*around.sites.shape, 2))
+        distance = np.where(usable, (offset**2).sum(2), np.inf)
+        nearest = distance.argmin(1)
+        row = np.flatnonzero(usable[np.arange(len(missing)), nearest])
+        if not len(row):
+            return
+        column = nearest[row]
+        site, other = missing[row], around.sites[row, column]
+        angle = turn[other] - (0.0 if around.turn is None else around.turn[row, column])
+        position[site] = position[other] - turned(offset[row, column], angle)
+        turn[site] = angle
+        known[site] = True
+        missing = missing[~known[missing]]
+
+
+def turned(offset: Float32[np.ndarray, "n 2"], angle: Float32[np.ndarray, "n"]) -> Float32[np.ndarray, "n 2"]:
+    """[row, column] offsets as axes turned counter-clockwise by ``angle`` read them."""
+    c, s = np.cos(angle), np.sin(angle)
+    row, column = offset.T
+    return np.stack([c * row + s * column, c * column - s * row], 1).astype(np.float32)
