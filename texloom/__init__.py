@@ -1,0 +1,68 @@
+"""Texture grown from a sample, on anything.
+
+exemplar = texloom.read_exemplar("bricks.png")
+domain = texloom.Grid(1024, 1024, wrap=True)
+result = texloom.synthesize(exemplar, domain, texloom.Optimize(), seed=7)
+texloom.write_images("wall", texloom.gather_images(result.sources, exemplar, rows=1024, columns=1024))
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from texloom.domain.grid import Grid as Grid
+    from texloom.domain.surface import Surface as Surface
+    from texloom.domain.surface import texel_for_repeats as texel_for_repeats
+    from texloom.exemplar.exemplar import Exemplar as Exemplar
+    from texloom.exemplar.exemplar import from_array as from_array
+    from texloom.field.smooth import smoothest as smoothest
+    from texloom.field.smooth import through_arrows as through_arrows
+    from texloom.io.mesh import read_mesh as read_mesh
+    from texloom.io.stack import read_exemplar as read_exemplar
+    from texloom.mesh.mesh import Mesh as Mesh
+    from texloom.metrics.score import score as score
+    from texloom.output.gather import gather_images as gather_images
+    from texloom.output.image import write_images as write_images
+    from texloom.sources import SourceMap as SourceMap
+    from texloom.synthesis.boundary import BoundarySampling as BoundarySampling
+    from texloom.synthesis.least_squares import LeastSquares as LeastSquares
+    from texloom.synthesis.optimize import Optimize as Optimize
+    from texloom.synthesis.patches import PatchSampling as PatchSampling
+    from texloom.synthesis.synthesize import synthesize as synthesize
+
+__version__ = "0.1.0"
+
+# Imported when first asked for: a command that needs one of them does not wait for the rest.
+_HOMES = {
+    "BoundarySampling": "synthesis.boundary",
+    "Exemplar": "exemplar.exemplar",
+    "Grid": "domain.grid",
+    "LeastSquares": "synthesis.least_squares",
+    "Mesh": "mesh.mesh",
+    "Optimize": "synthesis.optimize",
+    "PatchSampling": "synthesis.patches",
+    "SourceMap": "sources",
+    "Surface": "domain.surface",
+    "from_array": "exemplar.exemplar",
+    "gather_images": "output.gather",
+    "read_exemplar": "io.stack",
+    "read_mesh": "io.mesh",
+    "score": "metrics.score",
+    "smoothest": "field.smooth",
+    "synthesize": "synthesis.synthesize",
+    "texel_for_repeats": "domain.surface",
+    "through_arrows": "field.smooth",
+    "write_images": "output.image",
+}
+
+__all__ = ["__version__", *_HOMES]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'texloom' has no attribute {name!r}")
+    return getattr(import_module(f"texloom.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -133,14 +133,5 @@ def _choose_machine(device: str, threads: int | None) -> None:
     from texloom.kernels import launch
 
     launch.use(device=device, threads=threads)
-    if device == "cuda" and not _has_cuda():
+    if device == "cuda" and not launch.has_cuda():
         raise ParameterError("--device cuda: no CUDA device was found: use --device cpu")
-
-
-def _has_cuda() -> bool:
-    import warp
-
-    from texloom.kernels import launch
-
-    launch._initialize()  # silences Warp's own notice of a missing GPU
-    return warp.is_cuda_available()

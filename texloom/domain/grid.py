@@ -137,7 +137,12 @@ class Grid:
         else:
             inside = (row >= 0) & (row < self.rows) & (column >= 0) & (column < self.columns)
             around = np.where(inside, row * np.int32(self.columns) + column, np.int32(-1))
-        return Neighbourhoods(around, steps[None].astype(np.float32))
+        if self.field is None:
+            return Neighbourhoods(around, steps[None].astype(np.float32))
+        # A step along the image's axes, read in the frame of the middle site and in its texels.
+        in_frame = (steps[:, 1] - 1j * steps[:, 0]) * self._direction.ravel()[sites, None].conj()
+        in_frame /= self._texel[sites, None]
+        return Neighbourhoods(around, np.stack([-in_frame.imag, in_frame.real], -1).astype(np.float32))
 
     def _steps(
         self, centre: Int32[np.ndarray, "patch"], width: int, size: int

@@ -57,7 +57,7 @@ class Surface:
         """Number of sites."""
         return len(self.scale)
 
-    @cached_property
+    @property
     def area(self) -> Float32[np.ndarray, "site"]:
         """Area each site stands for, in exemplar texels."""
         return (self.refined.mesh.vertex_areas / self.texel_length**2).astype(np.float32)

@@ -50,6 +50,12 @@ def use(*, device: str | None = None, threads: int | None = None) -> None:
         _Machine.pool = None
 
 
+def has_cuda() -> bool:
+    """Whether a CUDA device can be used."""
+    _initialize()
+    return wp.is_cuda_available()
+
+
 def thread_count() -> int:
     """Threads in use on the CPU."""
     return _Machine.threads
@@ -65,7 +71,7 @@ def parallel_map(function: Callable[[int], Any], count: int) -> list[Any]:
 
 
 def launch(kernel: Any, count: int, *, inputs: Sequence[Any], outputs: Sequence[Any]) -> None:
-    """Run ``kernel`` for items ``0 .. count - 1``. Arrays are NumPy, C-contiguous, and shared with the kernel on the CPU.
+    """Run ``kernel`` for items ``0 .. count - 1``. Arrays are NumPy, C-contiguous, shared with the kernel on the CPU.
 
     ``inputs`` and ``outputs`` follow ``start`` in the kernel's order; arrays in ``outputs`` are written in place.
     """

@@ -62,8 +62,9 @@ def read_sample(
         if known > 0.0:
             for k in range(sites.shape[2]):
                 site = sites[patch, sample, k]
-                if label[site] >= 0:
-                    mean += (weights[patch, sample, k] / total) * colour[site, g]
+                if site >= 0:
+                    if label[site] >= 0:
+                        mean += (weights[patch, sample, k] / total) * colour[site, g]
         values[i, j, g] = mean
     return known
 

@@ -94,7 +94,7 @@ class BlockSearch:
         return best, cost
 
 
-def _average(image: Image, step: int) -> Image:
+def _average(image: Image, step: int) -> Float32[np.ndarray, "cell_row cell_column channel"]:
     """Means of ``step × step`` texels; an incomplete last row or column is left out."""
     rows, columns = image.shape[0] // step, image.shape[1] // step
     return image[: rows * step, : columns * step].reshape(rows, step, columns, step, -1).mean((1, 3))

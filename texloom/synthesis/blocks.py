@@ -46,7 +46,7 @@ class BlockGrowth:
     balance: float  # typical mismatches a block pays for having had its fair share already (squared)
     seed: int
 
-    def run(self, canvas: Canvas, batches: Sequence[Int32[np.ndarray, "patch"]], report: Report) -> None:
+    def run(self, canvas: Canvas, batches: Sequence[Int32[np.ndarray, "_"]], report: Report) -> None:
         """Lay every batch in turn onto the canvas; patches of one batch share no site."""
         usage = Usage(self.search)
         samples = np.arange(self.patches.width**2, dtype=np.int32)
