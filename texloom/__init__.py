@@ -55,7 +55,28 @@ _HOMES = {
     "write_images": "output.image",
 }
 
-__all__ = ["__version__", *_HOMES]
+__all__ = [
+    "BoundarySampling",
+    "Exemplar",
+    "Grid",
+    "LeastSquares",
+    "Mesh",
+    "Optimize",
+    "PatchSampling",
+    "SourceMap",
+    "Surface",
+    "__version__",
+    "from_array",
+    "gather_images",
+    "read_exemplar",
+    "read_mesh",
+    "score",
+    "smoothest",
+    "synthesize",
+    "texel_for_repeats",
+    "through_arrows",
+    "write_images",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -98,7 +98,7 @@ def test_sources_turned_against_the_middle_site_are_no_candidates(angle: float, 
 def test_sources_outside_the_exemplar_read_its_border() -> None:
     """Patches' outer samples may lie up to a texel outside."""
     made = scene(np.random.default_rng(5), whole=True)
-    made["position"][:] = [-0.9, 14.9]
+    made["position"][:], made["label"][:] = [-0.9, 14.9], 0
     around = Grid(ROWS, COLUMNS, wrap=True).neighbourhoods(np.arange(ROWS * COLUMNS, dtype=np.int32), REACH)
     made["similar"][:] = [5, 6]
     made["usable"][:] = 0
