@@ -52,7 +52,7 @@ def correct(scene: dict[str, ndarray], sites: ndarray, offset: ndarray, **other:
     return found, cost
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(seed=st.integers(0, 10**6), whole=st.booleans(), wrap=st.booleans())
 def test_every_site_takes_the_cheapest_candidate(seed: int, whole: bool, wrap: bool) -> None:
     rng = np.random.default_rng(seed)

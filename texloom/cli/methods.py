@@ -25,12 +25,13 @@ class MethodWish:
             from texloom.synthesis.patches import PatchSampling
 
             return Optimize() if self.method == "optimize" else PatchSampling()
-        from texloom import search as searches
-        from texloom.synthesis.boundary import BoundarySampling
-        from texloom.synthesis.least_squares import LeastSquares
+        from texloom.search import SEARCHES as by_name
+        from texloom.systems import resampling
 
-        paper = LeastSquares if self.method == "optimize" else BoundarySampling
-        return paper() if self.search is None else paper(search=searches.SEARCHES[self.search])
+        search = None if self.search is None else by_name[self.search]
+        if self.method == "optimize":
+            return resampling.optimization(search=search)
+        return resampling.patch_sampling(search=search)
 
 
 def wish(method: str | None, search: str | None, preset: str | None) -> MethodWish:

@@ -37,9 +37,17 @@ class Surface:
 
     @classmethod
     def build(
-        cls, mesh: Mesh, field: DirectionField, *, texel: float, scale: Float[np.ndarray, "vertex"] | None = None
+        cls,
+        mesh: Mesh,
+        field: DirectionField,
+        *,
+        texel: float,
+        scale: Float[np.ndarray, "vertex"] | None = None,
+        spacing: float = _LONGEST_EDGE,
     ) -> "Surface":
         """Sites for a field solved on ``mesh``; ``scale`` enlarges the texture around each of its vertices.
+
+        Edges are split until none is longer than ``spacing`` texels; at infinity the mesh's vertices are the sites.
 
         Raises: ParameterError, unless ``texel`` is a positive length; FieldError, unless every scale is positive.
         """
@@ -47,7 +55,7 @@ class Surface:
             raise ParameterError(f"a texel of {texel:g} world units: give a length above 0")
         scale = np.ones(len(mesh.vertices)) if scale is None else np.asarray(scale, np.float64)
         _check_scale(scale, len(mesh.vertices))
-        refined = refine(mesh, _LONGEST_EDGE * texel * scale)
+        refined = refine(mesh, spacing * texel * scale)
         corners = scale[mesh.faces[refined.vertex_parent_face]]
         site_scale = np.einsum("sc,sc->s", corners, refined.vertex_barycentric).astype(np.float32)
         return cls(mesh, refined, carry(field, mesh, refined), float(texel), site_scale)

@@ -14,6 +14,7 @@ class Usage:
         self._step = search.step
         self._shape = -(-rows // self._step), -(-columns // self._step)
         self._shown = np.zeros(self._shape)
+        self._usable = 1.0 if search.mask is None else float(search.mask.mean())
         self._cells = search.width // search.step
         self._candidates = search.anchors // search.step
 
@@ -24,7 +25,7 @@ class Usage:
         self._shown += np.bincount(flat, weights=area, minlength=self._shown.size).reshape(self._shape)
 
     def excess(self) -> Float32[np.ndarray, "candidate"]:
-        """Mean use of each candidate block over that of the whole sample: 1 is its fair share, 0 unused.
+        """Mean use of each candidate block over that of all usable texels: 1 is its fair share, 0 unused.
 
         Until about a third of the sample has been shown once, the share is taken as if it had been: chance should not
         weigh while there is little to share.
@@ -32,5 +33,5 @@ class Usage:
         total = np.pad(self._shown.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
         r, c, n = self._candidates[:, 0], self._candidates[:, 1], self._cells
         block = total[r + n, c + n] - total[r, c + n] - total[r + n, c] + total[r, c]
-        fair = max(self._shown.mean(), 0.3 * self._step**2)
+        fair = max(self._shown.mean() / self._usable, 0.3 * self._step**2)
         return (block / (n * n * fair)).astype(np.float32)

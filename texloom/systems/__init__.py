@@ -1,0 +1,1 @@
+"""One published system a file: its parts wired in the order of its paper."""
