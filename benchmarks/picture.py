@@ -93,6 +93,7 @@ def _strip(sample: np.ndarray, pictures: list[np.ndarray]) -> np.ndarray:
 
 def _save_sheet(strips: list[np.ndarray]) -> None:
     """Sample and results in the order of the tables. Not kept in the repository: most samples may not be shipped."""
-    path = report.RESULTS / "picture-sheet.png"
+    path = report.RESULTS.parents[1] / "out" / "picture-sheet.png"
+    path.parent.mkdir(exist_ok=True)
     Image.fromarray(np.concatenate(strips)).save(path)
-    print(f"  sheet: {path.name}")
+    print(f"  sheet: out/{path.name}")

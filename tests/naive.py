@@ -145,10 +145,11 @@ def correct_site(
         source = position[sites[k]]
         texel = np.clip(np.floor(source + 0.5).astype(int), 0, np.array(similar.shape[:2]) - 1)
         alike = [source + (other - texel) for other in similar[tuple(texel)]] if k == 0 else []
-        for place in [source - offset[k], *(other - offset[k] for other in alike)]:
+        for guess, place in enumerate([source - offset[k], *(other - offset[k] for other in alike)]):
             whole = np.floor(place + 0.5).astype(int)
             inside = (whole >= 0).all() and (whole < usable.shape).all() and usable[tuple(whole)]
-            if inside and len(tried) < most and all(np.abs(place - other).sum() >= 0.3 for other in tried):
+            fits = inside or k + guess == 0  # what is shown now may stay
+            if fits and len(tried) < most and all(np.abs(place - other).sum() >= 0.3 for other in tried):
                 tried.append(place)
     if not tried:
         return position[sites[0]], 0.0

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from numpy import ndarray
 
 from tests import naive
+from texloom.arrays import fours
 from texloom.kernels import averaging as kernels
 from texloom.kernels.launch import launch
 
@@ -38,8 +39,8 @@ def test_averages_are_weighted_means_and_bare_sites_keep_their_colour(seed: int,
     before = colour.copy()
     anchors = rng.integers(0, 11, (PATCHES, 2)).astype(np.int32)
     weight = rng.random(PATCHES, np.float32) + np.float32(0.01)
-    inputs = [start, patch, position, anchors, weight, scale, image]
-    launch(kernels.average_patches, SITES, inputs=inputs, outputs=[colour])
+    inputs = [start, patch, position, anchors, weight, scale, fours(image)]
+    launch(kernels.average_patches, SITES, inputs=inputs, outputs=[fours(colour)])
 
     lists = by_site(start, patch, position)
     covered = np.diff(start) > 0

@@ -100,6 +100,7 @@ def test_sources_outside_the_exemplar_read_its_border() -> None:
     made = scene(np.random.default_rng(5), whole=True)
     made["position"][:], made["label"][:] = [-0.9, 14.9], 0
     around = Grid(ROWS, COLUMNS, wrap=True).neighbourhoods(np.arange(ROWS * COLUMNS, dtype=np.int32), REACH)
+    made["image"][2:8, 4:10], made["colour"][:] = 0.5, 0.5
     made["similar"][:] = [5, 6]
     made["usable"][:] = 0
     made["usable"][4:7, 5:8] = 1

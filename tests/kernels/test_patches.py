@@ -130,8 +130,9 @@ def test_pasting_takes_sites_inside_the_seam_or_bare(seed: int, turned: bool, sc
     label, position = rng.integers(-1, 1, count).astype(np.int32), colours(rng, count, 2)
     site_turn, colour, pasted = np.zeros(count, np.float32), colours(rng, count, 4), np.empty(12, np.uint8)
     was = [a.copy() for a in (label, position, site_turn, colour)]
-    inputs = [entry, owner, site, at, turn, chosen, anchors, scale, width, band.place, seam, image]
-    launch(kernels.paste_blocks, 12, inputs=inputs, outputs=[label, position, site_turn, colour, pasted])
+    inputs = [entry, owner, site, at, turn, chosen, anchors, scale, width, band.place, seam, fours(image)]
+    outputs = [label, position, site_turn, fours(colour), pasted]
+    launch(kernels.paste_blocks, 12, inputs=inputs, outputs=outputs)
 
     for i, e in enumerate(entry):
         s, p = site[e], owner[i]

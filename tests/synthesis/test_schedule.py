@@ -1,7 +1,6 @@
 """Order: overlaps by brute force, batches that keep what matters, hops counted."""
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy import ndarray
@@ -72,9 +71,8 @@ def test_breadth_first_goes_by_hops_from_the_first_patch_of_every_part(seed: int
     assert keys == sorted(keys)
 
 
-@pytest.mark.parametrize("wrap", [False, True])
-def test_scan_lines_of_a_grid_run_in_parallel(wrap: bool) -> None:
-    grid = Grid(64, 64, wrap)
+def test_scan_lines_of_a_plane_run_in_parallel() -> None:
+    grid = Grid(64, 64)
     patches = grid.patches(grid.centres(8, 0), 12)
     groups = batches(np.arange(patches.count, dtype=np.int32), overlaps(patches))
     assert len(groups) < patches.count / 2

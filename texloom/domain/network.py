@@ -9,9 +9,9 @@ from jaxtyping import Complex64, Int32
 
 from texloom.domain.patches import Patches
 from texloom.domain.reach import cover_of
-from texloom.field.trace import Flow, Samples, follow, spokes, starts
+from texloom.field.trace import Flow, Samples, starts
 from texloom.kernels.launch import launch
-from texloom.kernels.trace import meet_half_way
+from texloom.kernels.trace import meet_half_way, trace_squares
 
 APART_AT_LEAST, APART_PER_TEXEL = 1.5, 0.2
 """Texels the two paths to a sample may end apart: always, and more for each texel of their shorter leg.
@@ -50,35 +50,17 @@ def lay_patches(
 
 def trace_network(flow: Flow, centres: Int32[np.ndarray, "patch"], width: int) -> Samples:
     """The samples of all patches, row-major; face -1 where neither path arrives or the two disagree."""
+    count, middle = len(centres), width // 2 * (width + 1)
+    samples = Samples.empty(2 * count * width * width)
     origins = starts(flow)
-    up, down, left, right = spokes(width)
-    samples = _two_leg_paths(flow, origins, centres, width, legs=((up, down), (left, right)))
-    other = _two_leg_paths(flow, origins, centres, width, legs=((left, right), (up, down)))
-    launch(
-        meet_half_way,
-        len(samples.face),
-        inputs=[
-            *(flow.record, flow.twin, flow.order, flow.position, flow.faces, wp.vec3(*flow.period)),
-            *(width, APART_AT_LEAST, APART_PER_TEXEL),
-            *(other.face, other.place, other.heading),
-        ],
-        outputs=[samples.face, samples.place, samples.heading],
-    )
-    return samples
-
-
-def _two_leg_paths(
-    flow: Flow, origins: Samples, centres: Int32[np.ndarray, "patch"], width: int, legs: tuple
-) -> Samples:
-    """Samples reached from each centre along the first legs, and from every sample of those along the second."""
-    middle = width // 2
-    samples = Samples.empty(len(centres) * width * width)
-    centre = (np.arange(len(centres)) * width * width + middle * width + middle).astype(np.int32)
-    samples.face[centre] = origins.face[centres]
-    samples.place[centre] = origins.place[centres]
-    samples.heading[centre] = origins.heading[centres]
-    spine = centre[:, None] + (np.arange(width) - middle).astype(np.int32) * abs(legs[0][0][0])
-    for first, leg in ((centre, legs[0]), (np.ascontiguousarray(spine.ravel(), np.int32), legs[1])):
-        for stride, steps, quarters in leg:
-            follow(flow, samples, first, stride=stride, steps=steps, quarters=quarters)
-    return samples
+    centre = np.arange(middle, 2 * count * width * width, width * width)
+    samples.face[centre] = np.tile(origins.face[centres], 2)
+    samples.place[centre] = np.tile(origins.place[centres], (2, 1))
+    samples.heading[centre] = np.tile(origins.heading[centres], (2, 1))
+    outputs = [samples.face, samples.place, samples.heading]
+    inputs = [flow.record, flow.twin, flow.order, width, count]
+    launch(trace_squares, count, inputs=inputs, outputs=outputs)
+    inputs = [flow.record, flow.twin, flow.order, flow.position, flow.faces, wp.vec3(*flow.period)]
+    limits = [width, APART_AT_LEAST, APART_PER_TEXEL, count]
+    launch(meet_half_way, count * width * width, inputs=[*inputs, *limits], outputs=outputs)
+    return Samples(*(part[: count * width * width] for part in outputs))

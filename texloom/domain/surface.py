@@ -113,19 +113,23 @@ class Surface:
         """Patches traced along the field and its orthogonal; they end at boundaries and singularities."""
         return lay_patches(self.flow, centres, width, axis=self.axis)
 
+    @cached_property
+    def _frames(self) -> tuple[Float32[np.ndarray, "site 3"], ...]:
+        """Places about their mean, directions, normals and texel lengths, as kernels take them."""
+        place = self.refined.mesh.vertices - self.refined.mesh.vertices.mean(0)
+        return tuple(a.astype(np.float32) for a in (place, self.direction, self.normal, self.texel_length))
+
     def neighbourhoods(self, sites: Int32[np.ndarray, "n"], reach: int) -> Neighbourhoods:
         """Sites nearby by walking along edges, laid into the tangent plane; the nearest where there are many."""
         most = (2 * reach + 1) ** 2
         shape = (len(sites), most)
         found, offset = np.empty(shape, np.int32), np.empty((*shape, 2), np.float32)
         turn = np.empty(shape, np.float32)
-        place = self.refined.mesh.vertices - self.refined.mesh.vertices.mean(0)
         launch(
             spread,
             len(sites),
             inputs=[
-                *(sites, *self.neighbours, place.astype(np.float32), self.direction.astype(np.float32)),
-                *(self.normal.astype(np.float32), self.texel_length.astype(np.float32), float(reach) + 0.5),
+                *(sites, *self.neighbours, *self._frames, float(reach) + 0.5),
             ],
             outputs=[found, offset, turn],
         )

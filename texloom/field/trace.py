@@ -28,7 +28,7 @@ class Flow:
     order: int
     faces: Int32[np.ndarray, "face 3"]
     twin: Int32[np.ndarray, "face 3"]
-    record: Float32[np.ndarray, "face 18"]
+    record: Float32[np.ndarray, "face 24"]
     position: Float32[np.ndarray, "site 3"]
     period: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
@@ -152,13 +152,14 @@ def _pack(
     power: Complex[np.ndarray, "face 3"],
     texel: Float[np.ndarray, "face 3"],
     twin: Int32[np.ndarray, "face 3"],
-) -> Float32[np.ndarray, "face 18"]:
+) -> Float32[np.ndarray, "face 24"]:
     """The kernels' record of every triangle."""
     a, b, c = corners.T
     edge = np.stack([a + 0j, (b - a) + 1j * c, -b - 1j * c], axis=1)
     edge /= np.abs(edge)
     across = -edge.ravel()[twin] * np.conj(edge)  # the twin runs the other way; unused at a boundary
-    parts = [corners, _pairs(power), texel, _pairs(across)]
+    inverse = np.stack([1 / a, b / (a * c), 1 / c], axis=1)
+    parts = [corners, _pairs(power), texel, _pairs(across), inverse, np.zeros_like(inverse)]
     return np.ascontiguousarray(np.concatenate(parts, axis=1), np.float32)
 
 

@@ -14,8 +14,8 @@ def average_patches(
     anchors: wp.array2d(dtype=int),  # in texels of the level
     weight: wp.array(dtype=float),
     scale: float,  # texels of the level per texel of the domain
-    exemplar: wp.array3d(dtype=float),
-    colour: wp.array2d(dtype=float),
+    exemplar: wp.array3d(dtype=wp.vec4),
+    colour: wp.array2d(dtype=wp.vec4),
 ):
     """colour[s] = sum over patches p covering s of weight[p] exemplar(anchors[p] + scale position(p, s)) / sum weight.
 
@@ -26,18 +26,18 @@ def average_patches(
     last = cover_start[s + 1]
     if first < last:
         total = float(0.0)
-        for ch in range(exemplar.shape[2]):
-            colour[s, ch] = 0.0
+        for g in range(exemplar.shape[2]):
+            colour[s, g] = wp.vec4(0.0, 0.0, 0.0, 0.0)
         for e in range(first, last):
             p = cover_patch[e]
             w = weight[p]
             total += w
             row = float(anchors[p, 0]) + scale * cover_position[e, 0]
             column = float(anchors[p, 1]) + scale * cover_position[e, 1]
-            for ch in range(exemplar.shape[2]):
-                colour[s, ch] = colour[s, ch] + w * sample_exemplar(exemplar, row, column, ch)
-        for ch in range(exemplar.shape[2]):
-            colour[s, ch] = colour[s, ch] / total
+            for g in range(exemplar.shape[2]):
+                colour[s, g] = colour[s, g] + w * sample_exemplar(exemplar, row, column, g)
+        for g in range(exemplar.shape[2]):
+            colour[s, g] = colour[s, g] / total
 
 
 @wp.kernel(enable_backward=False)
@@ -118,3 +118,48 @@ def feather_layers(
                 final = k
     if final >= 0:
         share[s, final] = share[s, final] + left
+
+
+@wp.kernel(enable_backward=False)
+def place_sources(
+    start: int,
+    entry: wp.array2d(dtype=int),
+    cover_patch: wp.array(dtype=int),
+    cover_position: wp.array2d(dtype=float),
+    cover_turn: wp.array(dtype=float),  # one element where no patch is turned
+    anchors: wp.array2d(dtype=int),
+    share: wp.array2d(dtype=float),
+    position: wp.array3d(dtype=float),
+    turn: wp.array2d(dtype=float),
+):
+    """position[s, k] = anchors[p] + the place in patch p of cover entry (s, k); heaviest first, ties in order.
+
+    Shares are made to sum to one exactly in the first; a site without any shows texel (0, 0) whole.
+    """
+    s = start + wp.tid()
+    most = entry.shape[1]
+    for k in range(1, most):
+        at = k
+        while at > 0:
+            if share[s, at] <= share[s, at - 1]:
+                break
+            e = entry[s, at]
+            entry[s, at] = entry[s, at - 1]
+            entry[s, at - 1] = e
+            w = share[s, at]
+            share[s, at] = share[s, at - 1]
+            share[s, at - 1] = w
+            at -= 1
+    rest = float(1.0)
+    for k in range(most):
+        e = entry[s, k]
+        position[s, k, 0] = 0.0
+        position[s, k, 1] = 0.0
+        if e >= 0:
+            position[s, k, 0] = float(anchors[cover_patch[e], 0]) + cover_position[e, 0]
+            position[s, k, 1] = float(anchors[cover_patch[e], 1]) + cover_position[e, 1]
+            if cover_turn.shape[0] > 1:
+                turn[s, k] = cover_turn[e]
+        if k > 0:
+            rest -= share[s, k]
+    share[s, 0] = rest

@@ -138,7 +138,9 @@ def correct_sites(
                 column = column + float(similar[r, c, guess - 1, 1] - c)
             row = row - dr
             column = column - dc
-            if is_new(tried, i, count, row, column) and is_usable(usable, row, column):
+            # What is shown now may always stay, or coherence would break where it comes from the exemplar's border.
+            fits = k + guess == 0 or is_usable(usable, row, column)
+            if fits and is_new(tried, i, count, row, column):
                 tried[i, count, 0] = row
                 tried[i, count, 1] = column
                 count += 1

@@ -8,7 +8,7 @@ import warp as wp
 
 
 @wp.func
-def sample_exemplar(exemplar: wp.array3d(dtype=float), row: float, column: float, channel: int) -> float:
+def sample_exemplar(exemplar: wp.array3d(dtype=wp.vec4), row: float, column: float, group: int) -> wp.vec4:
     """Bilinear value at (row, column), clamped at the border; exact at integers."""
     r = wp.clamp(row, 0.0, float(exemplar.shape[0] - 1))
     c = wp.clamp(column, 0.0, float(exemplar.shape[1] - 1))
@@ -16,15 +16,14 @@ def sample_exemplar(exemplar: wp.array3d(dtype=float), row: float, column: float
     c0 = int(c)
     fr = r - float(r0)
     fc = c - float(c0)
-    value = exemplar[r0, c0, channel]
-    if fr == 0.0 and fc == 0.0:
-        return value
-    r1 = wp.min(r0 + 1, exemplar.shape[0] - 1)
-    c1 = wp.min(c0 + 1, exemplar.shape[1] - 1)
-    upper = value + fc * (exemplar[r0, c1, channel] - value)
-    left = exemplar[r1, c0, channel]
-    lower = left + fc * (exemplar[r1, c1, channel] - left)
-    return upper + fr * (lower - upper)
+    value = exemplar[r0, c0, group]
+    if fr > 0.0 or fc > 0.0:
+        r1 = wp.min(r0 + 1, exemplar.shape[0] - 1)
+        c1 = wp.min(c0 + 1, exemplar.shape[1] - 1)
+        value = (1.0 - fr) * ((1.0 - fc) * value + fc * exemplar[r0, c1, group]) + fr * (
+            (1.0 - fc) * exemplar[r1, c0, group] + fc * exemplar[r1, c1, group]
+        )
+    return value
 
 
 @wp.func
@@ -81,7 +80,7 @@ def read_patches(
     values: wp.array3d(dtype=wp.vec4),
     known: wp.array2d(dtype=float),
 ):
-    """values[i, j] = mean of the corners of sample ``samples[j]`` of patch ``chosen[i]`` that are coloured (label >= 0).
+    """values[i, j] = mean of the coloured corners (label >= 0) of sample ``samples[j]`` of patch ``chosen[i]``.
 
     known[i, j] is 1 where at least half of the weight is coloured, else 0 (and values 0).
     """
@@ -183,7 +182,7 @@ def cut_seams(
     seam: wp.array3d(dtype=int),
     cost: wp.array2d(dtype=float),
 ):
-    """seam[p, k, t] = depth at which patch p begins around its border, shown with candidate k: the cheapest closed path.
+    """seam[p, k, t] = depth at which patch p, showing candidate k, begins around its border: the cheapest closed path.
 
     Dynamic programming twice around the unrolled ring (the second lap forgets where the first began):
     cost(t, d) = e(t, d) + min over |d' - d| <= 1 of cost(t - 1, d'). ``cost`` is that of one lap.
@@ -242,11 +241,11 @@ def paste_blocks(
     width: int,
     place: wp.array2d(dtype=int),  # (sample, 2): perimeter index and depth of each sample
     seam: wp.array2d(dtype=int),
-    exemplar: wp.array3d(dtype=float),
+    exemplar: wp.array3d(dtype=wp.vec4),
     label: wp.array(dtype=int),
     position: wp.array2d(dtype=float),
     turn: wp.array(dtype=float),
-    colour: wp.array2d(dtype=float),
+    colour: wp.array2d(dtype=wp.vec4),
     pasted: wp.array(dtype=wp.uint8),
 ):
     """Give a site inside its patch's seam (or without a colour) to that patch; pasted[i] tells whether entry i took.
@@ -270,5 +269,5 @@ def paste_blocks(
             turn[site] = entry_turn[e]
         position[site, 0] = float(anchors[p, 0]) + scale * row
         position[site, 1] = float(anchors[p, 1]) + scale * column
-        for ch in range(exemplar.shape[2]):
-            colour[site, ch] = sample_exemplar(exemplar, position[site, 0], position[site, 1], ch)
+        for g in range(exemplar.shape[2]):
+            colour[site, g] = sample_exemplar(exemplar, position[site, 0], position[site, 1], g)

@@ -2,9 +2,10 @@
 
 A triangle's record holds, in its own 2-D frame (corner 0 at the origin, corner 1 at (a, 0), corner 2 at (b, c)):
 a, b, c; the n-th power of the field's direction at its corners, (re, im) each; the world length of a texel at its
-corners; the rotation across each edge into the next triangle's frame, (re, im) each. Points are barycentric, so they
-never leave their triangle; ``twin[f, e]`` is the halfedge ``3 f' + e'`` on the other side of edge e (corner e to the
-next), -1 at a boundary. A walk that cannot go on ends in face -1.
+corners; the rotation across each edge into the next triangle's frame, (re, im) each; 1 / a, b / (a c), 1 / c; and to
+fill cache lines, nothing. Points are barycentric, so they never leave their triangle; ``twin[f, e]`` is the halfedge
+``3 f' + e'`` on the other side of edge e (corner e to the next), -1 at a boundary. A walk that cannot go on ends in
+face -1. Branches that depend on the place are avoided: a wrong guess costs as much as thirty products.
 """
 
 # ruff: noqa: UP018 (in a kernel int(0) declares a variable that a loop may change, 0 a constant)
@@ -30,15 +31,10 @@ def conjugate(p: wp.vec2) -> wp.vec2:
 
 
 @wp.func
-def quarter_turns(p: wp.vec2, quarters: int) -> wp.vec2:
-    """p turned counter-clockwise by 0, 1, 2 or 3 right angles."""
-    if quarters == 1:
-        return wp.vec2(-p[1], p[0])
-    if quarters == 2:
-        return -p
-    if quarters == 3:
-        return wp.vec2(p[1], -p[0])
-    return p
+def right_angles(quarters: int) -> wp.vec2:
+    """The rotation by 0, 1, 2 or 3 right angles, counter-clockwise."""
+    along = float(wp.where(quarters == 0, 1, wp.where(quarters == 2, -1, 0)))
+    return wp.vec2(along, float(wp.where(quarters == 1, 1, wp.where(quarters == 3, -1, 0))))
 
 
 @wp.func
@@ -55,14 +51,25 @@ def texel_at(record: wp.array2d(dtype=float), f: int, at: wp.vec3) -> float:
 
 
 @wp.func
+def raised(heading: wp.vec2, order: int) -> wp.vec2:
+    """The order-th power, for orders 1, 2, 4 and 6."""
+    if order == 1:
+        return heading
+    second = times(heading, heading)
+    if order == 2:
+        return second
+    fourth = times(second, second)
+    if order == 4:
+        return fourth
+    return times(fourth, second)
+
+
+@wp.func
 def nearest_root(power: wp.vec2, heading: wp.vec2, order: int) -> wp.vec2:
     """The order-th root of ``power`` nearest to ``heading``, a unit number; 0 where there is none to trust."""
     if wp.length_sq(power) < FAINTEST * FAINTEST:
         return wp.vec2(0.0, 0.0)
-    back = conjugate(heading)
-    change = power
-    for _ in range(order):
-        change = times(change, back)
+    change = times(power, conjugate(raised(heading, order)))
     if wp.abs(change[1]) < 0.2 * change[0]:
         # Nearly always: series to float precision, four times as fast
         t = change[1] / change[0]
@@ -80,11 +87,8 @@ def nearest_root(power: wp.vec2, heading: wp.vec2, order: int) -> wp.vec2:
 
 @wp.func
 def corner(record: wp.array2d(dtype=float), f: int, c: int) -> wp.vec2:
-    if c == 0:
-        return wp.vec2(0.0, 0.0)
-    if c == 1:
-        return wp.vec2(record[f, 0], 0.0)
-    return wp.vec2(record[f, 1], record[f, 2])
+    x = wp.where(c == 1, record[f, 0], record[f, 1])
+    return wp.vec2(wp.where(c == 0, 0.0, x), wp.where(c == 2, record[f, 2], 0.0))
 
 
 @wp.func
@@ -96,29 +100,47 @@ def edge(record: wp.array2d(dtype=float), f: int, e: int) -> wp.vec2:
 @wp.func
 def rates(record: wp.array2d(dtype=float), f: int, way: wp.vec2) -> wp.vec3:
     """Change of the barycentric coordinates along ``way``."""
-    r2 = way[1] / record[f, 2]
-    r1 = (way[0] - record[f, 1] * r2) / record[f, 0]
+    r1 = way[0] * record[f, 18] - way[1] * record[f, 19]
+    r2 = way[1] * record[f, 20]
     return wp.vec3(-r1 - r2, r1, r2)
+
+
+@wp.func
+def time_to_zero(at: float, rate: float) -> float:
+    """When a coordinate reaches 0; never, unless it falls."""
+    return wp.where(rate < 0.0, -at / rate, 1.0e30)
 
 
 @wp.func
 def exit_of(at: wp.vec3, rate: wp.vec3):
     """When the first coordinate reaches 0, and which: the corner opposite the edge that is reached."""
-    side = int(-1)
-    when = float(1.0e30)
-    for i in range(3):
-        if rate[i] < 0.0:
-            t = -at[i] / rate[i]
-            if t < when:
-                when = t
-                side = i
-    return when, side
+    t0 = time_to_zero(at[0], rate[0])
+    t1 = time_to_zero(at[1], rate[1])
+    t2 = time_to_zero(at[2], rate[2])
+    when = wp.min(t0, wp.min(t1, t2))
+    return when, wp.where(t0 == when, 0, wp.where(t1 == when, 1, 2))
 
 
 @wp.func
 def turn_across(record: wp.array2d(dtype=float), f: int, e: int) -> wp.vec2:
     """The rotation from the frame of face f to that of the face across its edge e."""
     return wp.vec2(record[f, 12 + 2 * e], record[f, 13 + 2 * e])
+
+
+@wp.func
+def component(p: wp.vec3, i: int) -> float:
+    return wp.where(i == 0, p[0], wp.where(i == 1, p[1], p[2]))
+
+
+@wp.func
+def between(e: int, share: float) -> wp.vec3:
+    """The point on edge e that has come so far from corner e to the next."""
+    rest = 1.0 - share
+    return wp.vec3(
+        wp.where(e == 0, rest, wp.where(e == 1, 0.0, share)),
+        wp.where(e == 1, rest, wp.where(e == 2, 0.0, share)),
+        wp.where(e == 2, rest, wp.where(e == 0, 0.0, share)),
+    )
 
 
 @wp.func
@@ -129,10 +151,10 @@ def walk(
     face: int,
     place: wp.vec3,
     direction: wp.vec2,
-    quarters: int,
+    aside: wp.vec2,
     texels: float,
 ):
-    """Go on for ``texels`` along the field turned by ``quarters``, from ``place``, where the field is ``direction``.
+    """Go on for ``texels`` along the field turned by ``aside``, from ``place``, where the field is ``direction``.
 
     In every face one midpoint step (second order). Lengths are in texels all along the way, so there and back is the
     same. Order 0 has no field: a straight line. Returns face, place and the field's direction there.
@@ -143,7 +165,7 @@ def walk(
     left = float(texels)
     entry = int(-1)  # the corner opposite the edge we came in by
     for _ in range(MOST_FACES):
-        rate = rates(record, f, quarter_turns(heading, quarters))
+        rate = rates(record, f, times(heading, aside))
         when, side = exit_of(at, rate)
         middle = at + (0.5 * wp.min(when, left * texel_at(record, f, at))) * rate
         texel = texel_at(record, f, middle)
@@ -151,16 +173,15 @@ def walk(
             heading = nearest_root(power_at(record, f, middle), heading, order)
             if heading[0] == 0.0 and heading[1] == 0.0:
                 return -1, at, heading
-            rate = rates(record, f, quarter_turns(heading, quarters))
-            if entry >= 0:
-                if rate[entry] < 0.0:
-                    # The fields of two faces press towards their edge: slide along it, unless they meet head on
-                    along = wp.normalize(edge(record, f, (entry + 1) % 3))
-                    speed = wp.dot(quarter_turns(heading, quarters), along)
-                    if wp.abs(speed) < HEAD_ON:
-                        return -1, at, heading
-                    rate = rates(record, f, wp.sign(speed) * along)
-                    rate[entry] = 0.0
+            rate = rates(record, f, times(heading, aside))
+            if entry >= 0 and component(rate, entry) < 0.0:
+                # The fields of two faces press towards their edge: slide along it, unless they meet head on
+                along = wp.normalize(edge(record, f, (entry + 1) % 3))
+                speed = wp.dot(times(heading, aside), along)
+                if wp.abs(speed) < HEAD_ON:
+                    return -1, at, heading
+                rate = rates(record, f, wp.sign(speed) * along)
+                rate[entry] = 0.0
             when, side = exit_of(at, rate)
         if left * texel <= when:
             at = wp.max(at + (left * texel) * rate, wp.vec3(0.0, 0.0, 0.0))
@@ -173,20 +194,48 @@ def walk(
 
         left = wp.max(left - when / texel, 0.0)
         at = at + when * rate
-        e = (side + 1) % 3
+        e = wp.where(side == 2, 0, side + 1)
         halfedge = twin[f, e]
         if halfedge < 0:
             return -1, at, heading
-        g = halfedge // 3
-        t = halfedge % 3
         heading = times(heading, turn_across(record, f, e))
-        share = wp.clamp(at[e] / (at[e] + at[(e + 1) % 3]), 0.0, 1.0)
-        at = wp.vec3(0.0, 0.0, 0.0)
-        at[t] = 1.0 - share
-        at[(t + 1) % 3] = share
-        entry = (t + 2) % 3
-        f = g
+        ahead = component(at, e)
+        share = wp.clamp(ahead / (ahead + component(at, wp.where(e == 2, 0, e + 1))), 0.0, 1.0)
+        f = halfedge // 3
+        t = halfedge - 3 * f
+        at = between(t, share)
+        entry = wp.where(t == 0, 2, t - 1)
     return -1, at, heading
+
+
+@wp.func
+def trace_line(
+    record: wp.array2d(dtype=float),
+    twin: wp.array2d(dtype=int),
+    order: int,
+    first: int,
+    stride: int,
+    steps: int,
+    quarters: int,
+    face: wp.array(dtype=int),
+    place: wp.array(dtype=wp.vec3),
+    heading: wp.array(dtype=wp.vec2),
+):
+    """Samples first + stride, ..., first + steps * stride: each one texel on from the one before."""
+    s = int(first)
+    f = int(face[s])
+    at = place[s]
+    way = heading[s]
+    at = wp.vec3(at[0], at[1], at[2])
+    way = wp.vec2(way[0], way[1])
+    aside = right_angles(quarters)
+    for _ in range(steps):
+        s = s + stride
+        if f >= 0:
+            f, at, way = walk(record, twin, order, f, at, way, aside, 1.0)
+        face[s] = f
+        place[s] = at
+        heading[s] = way
 
 
 @wp.kernel(enable_backward=False)
@@ -203,20 +252,44 @@ def trace_lines(
     place: wp.array(dtype=wp.vec3),
     heading: wp.array(dtype=wp.vec2),
 ):
-    """Samples first + stride, ..., first + steps * stride: each one texel on from the one before."""
-    s = first[start + wp.tid()]
-    f = int(face[s])
-    at = place[s]
-    way = heading[s]
-    at = wp.vec3(at[0], at[1], at[2])
-    way = wp.vec2(way[0], way[1])
-    for _ in range(steps):
-        s = s + stride
-        if f >= 0:
-            f, at, way = walk(record, twin, order, f, at, way, quarters, 1.0)
-        face[s] = f
-        place[s] = at
-        heading[s] = way
+    """One line for every item, as in ``trace_line``."""
+    i = start + wp.tid()
+    trace_line(record, twin, order, first[i], stride, steps, quarters, face, place, heading)
+
+
+@wp.kernel(enable_backward=False)
+def trace_squares(
+    start: int,
+    record: wp.array2d(dtype=float),
+    twin: wp.array2d(dtype=int),
+    order: int,
+    width: int,
+    patches: int,
+    face: wp.array(dtype=int),  # the squares of all patches, then those of the other paths
+    place: wp.array(dtype=wp.vec3),
+    heading: wp.array(dtype=wp.vec2),
+):
+    """Both paths to every sample of square i from its middle one: a spine through it, then lines off the spine.
+
+    The first goes up and down and then left and right, the other left and right first.
+    """
+    i = start + wp.tid()
+    before = width // 2
+    for path in range(2):
+        middle = (path * patches + i) * width * width + before * width + before
+        for k in range(2 * (width + 1)):
+            forward = k % 2
+            spine = k < 2
+            vertical = spine == (path == 0)
+            stride = wp.where(vertical, width, 1)
+            first = middle + wp.where(spine, 0, (k // 2 - 1 - before) * wp.where(vertical, 1, width))
+            steps = wp.where(forward == 1, width - 1 - before, before)
+            quarters = wp.where(vertical, 1, 2)
+            if forward == 1:
+                quarters = wp.where(vertical, 3, 0)
+            else:
+                stride = -stride
+            trace_line(record, twin, order, first, stride, steps, quarters, face, place, heading)
 
 
 @wp.func
@@ -260,10 +333,8 @@ def meet_half_way(
     width: int,
     apart_at_least: float,  # texels two paths may always end apart,
     apart_per_texel: float,  # and for each texel of their shorter leg
-    other_face: wp.array(dtype=int),
-    other_place: wp.array(dtype=wp.vec3),
-    other_heading: wp.array(dtype=wp.vec2),
-    face: wp.array(dtype=int),
+    patches: int,
+    face: wp.array(dtype=int),  # the squares of all patches, then those of the other paths
     place: wp.array(dtype=wp.vec3),
     heading: wp.array(dtype=wp.vec2),
 ):
@@ -273,21 +344,22 @@ def meet_half_way(
     """
     s = start + wp.tid()
     f = face[s]
-    g = other_face[s]
+    o = s + patches * width * width
+    g = face[o]
     if g < 0:
         return
     if f < 0:
         face[s] = g
-        place[s] = other_place[s]
-        heading[s] = other_heading[s]
+        place[s] = place[o]
+        heading[s] = heading[o]
         return
 
     if f == g:
         a = heading[s]
-        if wp.dot(a, other_heading[s]) < 0.5:
+        if wp.dot(a, heading[o]) < 0.5:
             face[s] = -1
             return
-        middle = 0.5 * (place[s] + other_place[s])
+        middle = 0.5 * (place[s] + place[o])
         place[s] = middle
         heading[s] = nearest_root(power_at(record, f, middle), wp.vec2(a[0], a[1]), order)
         return
@@ -296,10 +368,10 @@ def meet_half_way(
     u, v, m = axes_of(position, faces, g, period)
     cosine = wp.dot(n, m)
     here = heading[s]
-    there = other_heading[s][0] * u + other_heading[s][1] * v
+    there = heading[o][0] * u + heading[o][1] * v
     there = there - wp.dot(there, n) / wp.max(1.0 + cosine, 0.1) * (n + m)  # into this face's plane, least turn
     apart = nearest_image(
-        point(position, faces, g, other_place[s], period) - point(position, faces, f, place[s], period), period
+        point(position, faces, g, place[o], period) - point(position, faces, f, place[s], period), period
     )
     distance = wp.length(apart)
     row = wp.abs((s // width) % width - width // 2)
@@ -315,7 +387,7 @@ def meet_half_way(
     if wp.length(way) < 1.0e-6 * texel_at(record, f, place[s]):
         return
     way = wp.normalize(way)
-    h, at, end = walk(record, twin, 0, f, place[s], way, 0, half)
+    h, at, end = walk(record, twin, 0, f, place[s], way, wp.vec2(1.0, 0.0), half)
     if h >= 0:
         turned = times(times(here, conjugate(way)), end)
         root = nearest_root(power_at(record, h, at), turned, order)

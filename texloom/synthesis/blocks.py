@@ -144,9 +144,9 @@ class BlockGrowth:
             inputs=[
                 *(own, owner, self._site, self.patches.cover_position),
                 np.zeros(1, np.float32) if turn is None else turn,
-                *(chosen, anchors, 1.0, self.patches.width, self.ring.place, seam, self.search.image),
+                *(chosen, anchors, 1.0, self.patches.width, self.ring.place, seam, fours(self.search.image)),
             ],
-            outputs=[canvas.label, canvas.position, canvas.turn, canvas.colour, pasted],
+            outputs=[canvas.label, canvas.position, canvas.turn, fours(canvas.colour), pasted],
         )
         took = pasted != 0
         usage.add(canvas.position[site[took]], self.area[site[took]])

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Int32
 
 from texloom import draws
-from texloom.arrays import in_fours
+from texloom.arrays import fours, in_fours
 from texloom.domain.cover import group_by_site
 from texloom.domain.domain import Domain
 from texloom.domain.patches import Patches
@@ -133,9 +133,15 @@ class BoundarySampling:
                 len(own),
                 inputs=[
                     *(own, owner, site, patches.cover_position, turn, chosen, anchors[chosen]),
-                    *(1.0 / step, self.patch, everywhere, np.zeros((len(chosen), 1), np.int32), appearance),
+                    *(1.0 / step, self.patch, everywhere, np.zeros((len(chosen), 1), np.int32), fours(appearance)),
                 ],
-                outputs=[canvas.label, canvas.position, canvas.turn, canvas.colour, np.empty(len(own), np.uint8)],
+                outputs=[
+                    canvas.label,
+                    canvas.position,
+                    canvas.turn,
+                    fours(canvas.colour),
+                    np.empty(len(own), np.uint8),
+                ],
             )
 
     def _samples(self, step: int) -> Int32[np.ndarray, "sample 2"]:

@@ -5,7 +5,7 @@ from jaxtyping import Float32, Int32
 
 from texloom.domain.domain import Domain
 from texloom.domain.patches import Patches
-from texloom.kernels.averaging import feather_layers, heaviest_patches
+from texloom.kernels.averaging import feather_layers, heaviest_patches, place_sources
 from texloom.kernels.launch import launch
 from texloom.sources import SourceMap
 from texloom.synthesis.gaps import fill_gaps
@@ -19,9 +19,8 @@ def heaviest(
     patches: Patches,
     anchors: Int32[np.ndarray, "patch 2"],
     weight: Float32[np.ndarray, "patch"],
-    scale: float,
 ) -> SourceMap:
-    """Each site shows the mean of its heaviest patches; ``scale`` is exemplar texels a texel of the anchors."""
+    """Each site shows the mean of its heaviest patches."""
     entry, share = _empty(patches)
     launch(
         heaviest_patches,
@@ -29,7 +28,7 @@ def heaviest(
         inputs=[patches.cover_start, patches.cover_patch, weight],
         outputs=[entry, share],
     )
-    return _sources(domain, patches, anchors, scale, entry, share)
+    return _sources(domain, patches, anchors, entry, share)
 
 
 def feathered(
@@ -46,7 +45,7 @@ def feathered(
         ],
         outputs=[entry, share],
     )
-    return _sources(domain, patches, anchors, 1.0, entry, share)
+    return _sources(domain, patches, anchors, entry, share)
 
 
 def _empty(patches: Patches) -> tuple[Int32[np.ndarray, "site k"], Float32[np.ndarray, "site k"]]:
@@ -58,17 +57,26 @@ def _sources(
     domain: Domain,
     patches: Patches,
     anchors: Int32[np.ndarray, "patch 2"],
-    scale: float,
     entry: Int32[np.ndarray, "site k"],
     share: Float32[np.ndarray, "site k"],
 ) -> SourceMap:
     """Sources of the given cover entries, heaviest first; sites that no patch covers continue their neighbours'."""
-    order = np.argsort(-share, axis=1, kind="stable")
-    entry, share = np.take_along_axis(entry, order, 1), np.take_along_axis(share, order, 1)
-    position = anchors[patches.cover_patch[entry]] * np.float32(scale) + patches.cover_position[entry]
-    turn = np.zeros_like(share) if patches.cover_turn is None else patches.cover_turn[entry]
-    position[entry < 0], turn[entry < 0] = 0.0, 0.0
-    bare = entry[:, 0] < 0
-    fill_gaps(domain, ~bare, position[:, 0], turn[:, 0])
-    share[:, 0] += 1.0 - share.sum(1)  # whole where nothing covers, and where rounding left a little
-    return SourceMap(position, share, turn if turn.any() else None)
+    position = np.empty((*entry.shape, 2), np.float32)
+    turned = patches.cover_turn is not None
+    turn = np.zeros(entry.shape if turned else (1, 1), np.float32)
+    launch(
+        place_sources,
+        len(entry),
+        inputs=[
+            *(entry, patches.cover_patch, patches.cover_position),
+            *(patches.cover_turn if turned else np.zeros(1, np.float32), anchors),
+        ],
+        outputs=[share, position, turn],
+    )
+    bare = np.diff(patches.cover_start) == 0
+    if bare.any():
+        lead = np.ascontiguousarray(turn[:, 0]) if turned else np.zeros(len(entry), np.float32)
+        fill_gaps(domain, ~bare, position[:, 0], lead)
+        if turned:
+            turn[:, 0] = lead
+    return SourceMap(position, share, turn if turned else None)

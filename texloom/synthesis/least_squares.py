@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float32, Int32
 
 from texloom import draws
-from texloom.arrays import in_fours
+from texloom.arrays import fours, in_fours
 from texloom.domain.domain import Domain
 from texloom.domain.patches import Patches
 from texloom.errors import ParameterError
@@ -131,7 +131,7 @@ class LeastSquares:
                 stopped = "iterations"
             anchors = np.ascontiguousarray(vectors.anchors[found])
         count = sum(laid[stage.extent].count for stage in self.schedule)
-        sources = heaviest(domain, laid[stage.extent], anchors * np.int32(stage.step), weight, 1.0)
+        sources = heaviest(domain, laid[stage.extent], anchors * np.int32(stage.step), weight)
         return Result(sources, tuple(energy), {}, stopped, count)
 
     def _samples(self, stage: Stage) -> Int32[np.ndarray, "sample 2"]:
@@ -161,9 +161,9 @@ def _expect(
         len(canvas.colour),
         inputs=[
             *(patches.cover_start, patches.cover_patch, patches.cover_position),
-            *(anchors, weight, 1.0 / step, appearance),
+            *(anchors, weight, 1.0 / step, fours(appearance)),
         ],
-        outputs=[canvas.colour],
+        outputs=[fours(canvas.colour)],
     )
 
 
