@@ -154,7 +154,9 @@ def correct_site(
     if not tried:
         return position[sites[0]], 0.0
     costs = [
-        np.mean([((bilinear(image, *(place + offset[k])) - colour[sites[k]]) ** 2).sum() for k in np.flatnonzero(there)])
+        np.mean(
+            [((bilinear(image, *(place + offset[k])) - colour[sites[k]]) ** 2).sum() for k in np.flatnonzero(there)]
+        )
         for place in tried
     ]
     return tried[int(np.argmin(costs))], min(costs)

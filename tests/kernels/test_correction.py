@@ -76,7 +76,9 @@ def test_a_neighbourhood_that_nothing_changed_is_passed_over() -> None:
     around = Grid(ROWS, COLUMNS).neighbourhoods(np.arange(ROWS * COLUMNS, dtype=np.int32), REACH)
     changed = np.zeros(ROWS * COLUMNS, np.int32)
     changed[0] = 5
-    found, cost = correct(made, around.sites, around.offset, changed=changed, visited=np.full(len(changed), 5, np.int32))
+    found, cost = correct(
+        made, around.sites, around.offset, changed=changed, visited=np.full(len(changed), 5, np.int32)
+    )
     beside = np.isin(np.arange(len(changed)), [0, 1, COLUMNS, COLUMNS + 1])
     assert (cost[~beside] == 0).all() and (cost[beside] > 0).any()
     np.testing.assert_array_equal(found[~beside], made["position"][~beside])

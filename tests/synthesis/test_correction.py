@@ -76,7 +76,9 @@ def test_few_sites_are_corrected_too(count: int) -> None:
 
 def test_no_passes_leave_all_as_it_is() -> None:
     canvas = copy(identity())
-    assert correction().run(canvas, Grid(SIZE, SIZE), np.arange(9, dtype=np.int32), passes=0, seed=0, report=silent) == []
+    assert (
+        correction().run(canvas, Grid(SIZE, SIZE), np.arange(9, dtype=np.int32), passes=0, seed=0, report=silent) == []
+    )
     np.testing.assert_array_equal(canvas.position, identity())
 
 

@@ -8,7 +8,9 @@ from texloom.domain.domain import Domain
 from texloom.domain.grid import Grid
 from texloom.synthesis.layers import MOST, feathered, heaviest
 
-DOMAINS = pytest.mark.parametrize("domain", [Grid(20, 17), Grid(20, 17, wrap=True), ball()], ids=["plane", "torus", "ball"])
+DOMAINS = pytest.mark.parametrize(
+    "domain", [Grid(20, 17), Grid(20, 17, wrap=True), ball()], ids=["plane", "torus", "ball"]
+)
 
 
 @DOMAINS

@@ -8,7 +8,7 @@ import warp as wp
 from jaxtyping import Complex64, Int32
 
 from texloom.domain.patches import Patches
-from texloom.domain.reach import cover_of
+from texloom.domain.reach import Covering
 from texloom.field.trace import Flow, Samples, starts
 from texloom.kernels.launch import launch
 from texloom.kernels.trace import meet_half_way, trace_squares
@@ -20,6 +20,9 @@ Where a field of curvature k turns, legs of u and v texels end k u v apart and h
 crowd by k u / 2 and k v / 2: a tenth of a texel when the second term is spent. Past both, patches would fold.
 """
 
+_SAMPLES_AT_ONCE = 1 << 18
+"""Traced and covered together: few enough to stay in a cache, enough for every thread."""
+
 
 def lay_patches(
     flow: Flow, centres: Int32[np.ndarray, "patch"], width: int, *, axis: Complex64[np.ndarray, "face 3"]
@@ -30,17 +33,24 @@ def lay_patches(
     and then up or down; it lies half way between their ends. ``axis`` is the site's frame at every face corner, as a
     direction in the face.
     """
-    samples = trace_network(flow, centres, width)
-    reached = samples.face >= 0
-    sites = np.where(reached[:, None], flow.faces[samples.face], -1).astype(np.int32)
-    samples.place[~reached] = 0
-    start, patch, position, turn = cover_of(flow, samples, width, axis)
-    shape = (len(centres), width * width, 3)
+    count, square = len(centres), width * width
+    sites = np.empty((count, square, 3), np.int32)
+    weights = np.empty((count, square, 3), np.float32)
+    covering = Covering(flow, width, axis)
+    batch = max(1, _SAMPLES_AT_ONCE // square)
+    for begin in range(0, count, batch):
+        samples = trace_network(flow, centres[begin : begin + batch], width)
+        reached = samples.face >= 0
+        samples.place[~reached] = 0
+        sites[begin : begin + batch] = np.where(reached[:, None], flow.faces[samples.face], -1).reshape(-1, square, 3)
+        weights[begin : begin + batch] = samples.place.reshape(-1, square, 3)
+        covering.add(samples)
+    start, patch, position, turn = covering.cover()
     return Patches(
         width=width,
         centres=centres,
-        sites=sites.reshape(shape),
-        weights=samples.place.reshape(shape),
+        sites=sites,
+        weights=weights,
         cover_start=start,
         cover_patch=patch,
         cover_position=position,

@@ -1,12 +1,13 @@
 """The cover of traced patches: where every site lies in the patches around it."""
 
-import numpy as np
-from jaxtyping import Bool, Complex64, Float32, Int32
+from dataclasses import dataclass, field
 
-from texloom.domain.cover import group_by_site
+import numpy as np
+from jaxtyping import Complex64, Float32, Int8, Int32
+
 from texloom.field.trace import Flow, Samples
 from texloom.kernels.launch import launch
-from texloom.kernels.reach import nearest_of_patch, sites_in_cells, unfold_around
+from texloom.kernels.reach import collect_entries, cover_squares, group_cover
 
 Cover = tuple[
     Int32[np.ndarray, "sites_plus_one"],
@@ -16,11 +17,16 @@ Cover = tuple[
 ]
 """Start, patch, position and turn, as in ``Patches``."""
 
+_LEAST_ROOM = 4  # sites, and faces, for each sample of a patch: enough at two sites a texel
+_SHARES = 64  # of the sites, grouped at the same time
 
-def cover_of(flow: Flow, samples: Samples, width: int, axis: Complex64[np.ndarray, "face 3"]) -> Cover:
+
+@dataclass(eq=False)
+class Covering:
     """Every site's position in every patch: that of the patch's nearest sample, and the offset from it.
 
-    ``axis`` is the site's frame at every face corner, as a direction in the face.
+    ``axis`` is the site's frame at every face corner, as a direction in the face. Patches are added in batches, in
+    order; ``cover`` turns them inside out.
 
     The offset is measured in the sample's frame, on triangles laid flat around it: first order, exact where the field
     is straight. Ties keep the lowest sample. Positions end half a texel outside the patch's outer samples, and one
@@ -29,75 +35,103 @@ def cover_of(flow: Flow, samples: Samples, width: int, axis: Complex64[np.ndarra
 
     Departure: the paper finds the quad of samples around a site and inverts it by a rule of two triangles (fig. 3c).
     """
-    sample, site, offset, steps = _cells(flow, samples, width, axis)
-    start, order = group_by_site(site, len(flow.position))
-    keep = _nearest(width * width, start, order, sample, offset)
-    kept = order[keep]
-    start = np.append(np.zeros(1, np.int32), np.cumsum(keep, dtype=np.int32))[start]
-    patch, at = np.divmod(sample[kept], np.int32(width * width))
-    position = np.stack(np.divmod(at, np.int32(width)), axis=1, dtype=np.float32, casting="unsafe") + offset[kept]
-    if flow.order == 1:
-        return start, patch, position, None
-    turns = (np.arange(flow.order) + (flow.order - 1) // 2) % flow.order - (flow.order - 1) // 2
-    return start, patch, position, (turns * (2 * np.pi / flow.order)).astype(np.float32)[steps[kept]]
+
+    flow: Flow
+    width: int
+    axis: Complex64[np.ndarray, "face 3"]
+    _batches: list["_Entries"] = field(default_factory=list)
+    _tables: "_Tables | None" = None
+
+    def add(self, samples: Samples) -> None:
+        """The next patches, one or more; cost about half that of tracing them."""
+        flow, samples_of_patch = self.flow, self.width * self.width
+        patches = len(samples.face) // samples_of_patch
+        if self._tables is None or self._tables.patches < patches:
+            self._tables = _Tables(patches, _LEAST_ROOM * samples_of_patch)
+        frames = np.ascontiguousarray(self.axis).view(np.float32).reshape(-1, 3, 2)
+        inputs = [flow.record, flow.twin, flow.faces, frames, flow.order, self.width]
+        count = np.empty(patches, np.int32)
+        while True:
+            outputs = [*self._tables.scratch, count, *self._tables.found]
+            launch(
+                cover_squares,
+                patches,
+                inputs=[*inputs, samples.face, samples.place, samples.heading],
+                outputs=outputs,
+            )
+            if (count >= 0).all():
+                break
+            self._tables = _Tables(self._tables.patches, 2 * self._tables.room)
+        first = np.append(np.zeros(1, np.int32), np.cumsum(count, dtype=np.int32))
+        entries = _Entries.empty(count, steps=flow.order > 1)
+        launch(
+            collect_entries,
+            patches,
+            inputs=[flow.order, self.width, first, *self._tables.found],
+            outputs=[entries.site, entries.position, entries.steps],
+        )
+        self._batches.append(entries)
+
+    def cover(self) -> Cover:
+        """Of all patches added. A counting sort: O(entry + site) time."""
+        entries, site_count, order = _Entries.together(self._batches), len(self.flow.position), self.flow.order
+        self._batches, self._tables = [], None
+        start = np.append(np.zeros(1, np.int32), np.cumsum(np.bincount(entries.site, minlength=site_count)))
+        start = start.astype(np.int32)
+        first = np.append(np.zeros(1, np.int32), np.cumsum(entries.count, dtype=np.int32))
+        steps = (np.arange(order) + (order - 1) // 2) % order - (order - 1) // 2
+        total = int(start[-1])
+        patch, position = np.empty(total, np.int32), np.empty((total, 2), np.float32)
+        turn = np.empty(total if order > 1 else 0, np.float32)
+        launch(
+            group_cover,
+            _SHARES,
+            inputs=[
+                *(site_count, _SHARES, first, entries.site, entries.position, entries.steps),
+                (steps * (2 * np.pi / order)).astype(np.float32),
+            ],
+            outputs=[start[:-1].copy(), patch, position, turn],
+        )
+        return start, patch, position, turn if order > 1 else None
 
 
-def _cells(
-    flow: Flow, samples: Samples, width: int, axis: Complex64[np.ndarray, "face 3"]
-) -> tuple[
-    Int32[np.ndarray, "entry"], Int32[np.ndarray, "entry"], Float32[np.ndarray, "entry 2"], Int32[np.ndarray, "entry"]
-]:
-    """Sample, site, offset and turn (in n-ths) of every site in every sample's cell; the cells overlap a little."""
-    around = _surroundings(flow, samples, axis)
-    inputs = [flow.record, flow.order, width, *around, samples.face, samples.place, samples.heading]
-    count, nothing = np.empty(len(samples.face), np.int32), np.empty(0, np.int32)
-    launch(
-        sites_in_cells,
-        len(count),
-        inputs=[*inputs, nothing],
-        outputs=[count, nothing, np.empty((0, 2), np.float32), nothing],
-    )
-    ends = np.cumsum(count, dtype=np.int32)
-    total = int(ends[-1]) if len(ends) else 0
-    site, offset, steps = np.empty(total, np.int32), np.empty((total, 2), np.float32), np.zeros(total, np.int32)
-    launch(sites_in_cells, len(count), inputs=[*inputs, ends - count], outputs=[count, site, offset, steps])
-    return np.repeat(np.arange(len(count), dtype=np.int32), count), site, offset, steps
+@dataclass(frozen=True, eq=False)
+class _Entries:
+    """Sites of some patches, patch after patch: how many in each; site, position and n-ths of a turn of every one."""
+
+    count: Int32[np.ndarray, "patch"]
+    site: Int32[np.ndarray, "entry"]
+    position: Float32[np.ndarray, "entry 2"]
+    steps: Int8[np.ndarray, "turned"]
+
+    @classmethod
+    def empty(cls, count: Int32[np.ndarray, "patch"], *, steps: bool) -> "_Entries":
+        total = int(count.sum())
+        turned = total if steps else 0
+        return cls(count, np.empty(total, np.int32), np.empty((total, 2), np.float32), np.empty(turned, np.int8))
+
+    @classmethod
+    def together(cls, parts: list["_Entries"]) -> "_Entries":
+        """One after the other."""
+        parts = [*parts, cls.empty(np.zeros(0, np.int32), steps=False)]
+        return cls(
+            *(np.concatenate([getattr(p, name) for p in parts]) for name in ("count", "site", "position", "steps"))
+        )
 
 
-def _surroundings(
-    flow: Flow, samples: Samples, axis: Complex64[np.ndarray, "face 3"]
-) -> tuple[
-    Int32[np.ndarray, "face"],
-    Int32[np.ndarray, "face"],
-    Int32[np.ndarray, "entry"],
-    Float32[np.ndarray, "entry 2"],
-    Float32[np.ndarray, "framed 2"],
-]:
-    """Sites around every face that holds a sample: the first one's entry and their number, then for each entry the
-    site, its place and (for a symmetric field) its frame in the face's frame."""
-    face_count, nothing = len(flow.faces), np.empty(0, np.int32)
-    wanted = np.zeros(face_count, np.uint8)
-    wanted[samples.face[samples.face >= 0]] = 1
-    frames = np.ascontiguousarray(axis).view(np.float32).reshape(-1, 3, 2)
-    inputs = [flow.record, flow.twin, flow.faces, frames, wanted, flow.order]
-    count, no_points = np.empty(face_count, np.int32), np.empty((0, 2), np.float32)
-    launch(unfold_around, face_count, inputs=[*inputs, nothing], outputs=[count, nothing, no_points, no_points])
-    ends = np.cumsum(count, dtype=np.int32)
-    total = int(ends[-1]) if face_count else 0
-    site, place = np.empty(total, np.int32), np.empty((total, 2), np.float32)
-    frame = np.empty((total if flow.order > 1 else 0, 2), np.float32)
-    launch(unfold_around, face_count, inputs=[*inputs, ends - count], outputs=[count, site, place, frame])
-    return ends - count, count, site, place, frame
+class _Tables:
+    """Room for the kernel to work in: for each patch of a batch so many faces and sites, and hash tables of them."""
 
-
-def _nearest(
-    samples: int,
-    start: Int32[np.ndarray, "sites_plus_one"],
-    order: Int32[np.ndarray, "entry"],
-    sample: Int32[np.ndarray, "entry"],
-    offset: Float32[np.ndarray, "entry 2"],
-) -> Bool[np.ndarray, "entry"]:
-    """Which entries, in ``order``, are the nearest of their site and patch."""
-    keep = np.zeros(len(order), np.uint8)
-    launch(nearest_of_patch, len(start) - 1, inputs=[samples, start, order, sample, offset], outputs=[keep])
-    return keep.view(bool)
+    def __init__(self, patches: int, room: int) -> None:
+        slots = 1 << (2 * room - 1).bit_length()
+        shape = (patches, room)
+        self.patches, self.room = patches, room
+        self.scratch = [
+            *(np.empty((patches, slots), np.int32), np.empty((patches, slots), np.int32)),
+            *(np.empty(shape, np.int32), np.empty(shape, np.int32), np.empty(shape, np.float32)),
+            *(np.empty((*shape, 2), np.float32), np.empty((*shape, 2), np.float32)),
+        ]
+        self.found = [
+            *(np.empty(shape, np.int32), np.empty(shape, np.int32)),
+            *(np.empty((*shape, 2), np.float32), np.empty((*shape, 2), np.float32)),
+        ]

@@ -4,6 +4,7 @@ A threaded product splits its sums by the number of threads, so their rounding w
 run on one thread each, in blocks of fixed size, and our own pool works on the blocks.
 """
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -15,11 +16,7 @@ from texloom.kernels.launch import parallel_map
 @contextmanager
 def single_threaded() -> Iterator[None]:
     """Inside, every matrix product runs on the calling thread alone."""
-    controller = _controller()
-    if controller is None:
-        yield
-        return
-    with controller.limit(limits=1, user_api="blas"):
+    with _controller("scipy.linalg" in sys.modules).limit(limits=1, user_api="blas"):
         yield
 
 
@@ -31,12 +28,8 @@ def over_blocks(function: Callable[[int, int], Any], count: int, block: int) -> 
 
 
 @cache
-def _controller() -> Any:
-    """Finding the BLAS libraries takes milliseconds, so once. None where threadpoolctl is not installed."""
-    import scipy.linalg  # noqa: F401  (it brings a BLAS of its own, to be found as well)
+def _controller(scipy_loaded: bool) -> Any:
+    """Finding the BLAS libraries takes milliseconds, so once, and again when SciPy has brought its own."""
+    from threadpoolctl import ThreadpoolController
 
-    try:
-        from threadpoolctl import ThreadpoolController
-    except ImportError:
-        return None
     return ThreadpoolController()

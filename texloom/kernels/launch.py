@@ -24,7 +24,6 @@ import numpy as np
 import warp as wp
 
 _CHUNKS_PER_THREAD = 8  # enough to even out uneven items, few enough that a launch (about 30 µs) stays cheap
-_LEAST_CHUNK = 32  # items; smaller chunks cost more to hand out than they save
 
 wp.config.log_level = wp.LOG_ERROR
 wp.config.enable_backward = False
@@ -70,10 +69,11 @@ def parallel_map(function: Callable[[int], Any], count: int) -> list[Any]:
     return list(_Machine.pool.map(function, range(count)))
 
 
-def launch(kernel: Any, count: int, *, inputs: Sequence[Any], outputs: Sequence[Any]) -> None:
+def launch(kernel: Any, count: int, *, inputs: Sequence[Any], outputs: Sequence[Any], grain: int = 32) -> None:
     """Run ``kernel`` for items ``0 .. count - 1``. Arrays are NumPy, C-contiguous, shared with the kernel on the CPU.
 
     ``inputs`` and ``outputs`` follow ``start`` in the kernel's order; arrays in ``outputs`` are written in place.
+    ``grain`` is the fewest items worth a thread: lower it where an item takes long (a chunk costs some 50 µs).
     """
     if count == 0:
         return
@@ -82,7 +82,7 @@ def launch(kernel: Any, count: int, *, inputs: Sequence[Any], outputs: Sequence[
         _launch_on_device(kernel, count, inputs, outputs)
         return
     arguments = _share(kernel, (*inputs, *outputs))
-    chunks = 1 if _Machine.threads == 1 else min(_Machine.threads * _CHUNKS_PER_THREAD, -(-count // _LEAST_CHUNK))
+    chunks = 1 if _Machine.threads == 1 else min(_Machine.threads * _CHUNKS_PER_THREAD, -(-count // grain))
     bounds = np.linspace(0, count, chunks + 1).astype(int)
 
     def run(chunk: int) -> None:

@@ -1,4 +1,4 @@
-"""Which sites lie around a sample: triangles unfolded around its face once, then one look for every sample in it."""
+"""Where the sites lie in traced patches: triangles laid flat around the samples, spreading from sample to sample."""
 
 # ruff: noqa: UP018 (in a kernel int(0) declares a variable that a loop may change, 0 a constant)
 
@@ -6,201 +6,251 @@ import warp as wp
 
 from texloom.kernels.trace import conjugate, corner, texel_at, times, turn_across
 
-MOST = wp.constant(96)  # faces unfolded around one face, and sites seen there
-Indices = wp.types.vector(length=96, dtype=wp.int32)
-Points = wp.types.vector(length=192, dtype=wp.float32)
-
 FAR = wp.constant(1.0)  # texels from a sample to the farthest site it can place
-SIDE = wp.constant(0.65)  # half a cell, and enough to close the gaps where samples spread
 BORDER = wp.constant(0.5)  # half a cell, at the border of the patch
+FULL = wp.constant(-1)  # count of a patch whose tables were too small
+
+
+@wp.func
+def slot_of(table: wp.array2d(dtype=int), keys: wp.array2d(dtype=int), i: int, key: int) -> int:
+    """Where a key stands in hash table i, or would: a row of numbers into ``keys[i]``, -1 where free."""
+    mask = table.shape[1] - 1
+    slot = int((wp.uint32(key) * wp.uint32(2654435761)) >> wp.uint32(15)) & mask
+    for _ in range(table.shape[1]):
+        k = table[i, slot]
+        if k < 0:
+            return slot
+        if keys[i, k] == key:
+            return slot
+        slot = (slot + 1) & mask
+    return slot
 
 
 @wp.func
 def distance_to(p: wp.vec2, q: wp.vec2) -> float:
-    """From the origin to the segment p q."""
+    """From the origin to the segment p q, squared."""
     along = q - p
     t = wp.clamp(-wp.dot(p, along) / wp.max(wp.length_sq(along), 1.0e-30), 0.0, 1.0)
-    return wp.length(p + t * along)
+    return wp.length_sq(p + t * along)
+
+
+@wp.func
+def room_around(s: int, width: int) -> wp.vec4:
+    """How far the cell of a sample goes: left, right, down, up; its neighbours will cut it."""
+    row = (s // width) % width
+    column = s % width
+    return wp.vec4(
+        wp.where(column == 0, BORDER, FAR),
+        wp.where(column == width - 1, BORDER, FAR),
+        wp.where(row == width - 1, BORDER, FAR),
+        wp.where(row == 0, BORDER, FAR),
+    )
+
+
+@wp.func
+def place_site(
+    site_table: wp.array2d(dtype=int),
+    site: wp.array2d(dtype=int),
+    sample: wp.array2d(dtype=int),
+    offset: wp.array2d(dtype=wp.vec2),
+    frame: wp.array2d(dtype=wp.vec2),
+    i: int,
+    count: int,
+    v: int,
+    s: int,
+    p: wp.vec2,
+    room: wp.vec4,
+    own: wp.vec2,
+) -> int:
+    """Note that site v lies at p from sample s, if s is the nearest one yet; returns the number of sites known."""
+    distance = wp.length_sq(p)
+    if distance > FAR * FAR or p[0] < -room[0] or p[0] > room[1] or p[1] < -room[2] or p[1] > room[3]:
+        return count
+    slot = slot_of(site_table, site, i, v)
+    k = site_table[i, slot]
+    known = int(count)
+    if k < 0:
+        k = count
+        known = count + 1
+        site_table[i, slot] = k
+        site[i, k] = v
+    else:
+        best = wp.length_sq(offset[i, k])
+        if distance > best or (distance == best and s >= sample[i, k]):
+            return count
+    sample[i, k] = s
+    offset[i, k] = p
+    frame[i, k] = own
+    return known
 
 
 @wp.kernel(enable_backward=False)
-def unfold_around(
+def cover_squares(
     start: int,
     record: wp.array2d(dtype=float),
     twin: wp.array2d(dtype=int),
     faces: wp.array2d(dtype=int),
     axis: wp.array2d(dtype=wp.vec2),  # the site's frame at every face corner, in the face's frame
-    wanted: wp.array(dtype=wp.uint8),
-    order: int,
-    first: wp.array(dtype=int),  # where each face's sites go; empty to count only
-    count: wp.array(dtype=int),
-    site: wp.array(dtype=int),
-    place: wp.array(dtype=wp.vec2),
-    frame: wp.array(dtype=wp.vec2),
-):
-    """Sites that a sample in face i can place, with their places and frames in the frame of i.
-
-    Breadth first over edges within reach of the face. Frames are left out where the field has one direction only.
-    """
-    i = start + wp.tid()
-    count[i] = 0
-    if wanted[i] == wp.uint8(0):
-        return
-    middle = (corner(record, i, 1) + corner(record, i, 2)) / 3.0
-    far = wp.max(wp.length(middle), wp.length(corner(record, i, 1) - middle))
-    far = wp.max(far, wp.length(corner(record, i, 2) - middle))
-    far = far + FAR * wp.max(wp.max(record[i, 9], record[i, 10]), record[i, 11])
-
-    queue = Indices()  # halfedges come in by, the rotation of each face's frame, its corner 0 against the middle
-    turns = Points()
-    origins = Points()
-    seen = Indices()  # sites
-    queue[0] = 3 * i
-    turns[0] = 1.0
-    turns[1] = 0.0
-    origins[0] = -middle[0]
-    origins[1] = -middle[1]
-    queued = int(1)
-    seen_count = int(0)
-    found = int(0)
-    head = int(0)
-    while head < queued:
-        f = queue[head] // 3
-        entry = queue[head] % 3
-        turn = wp.vec2(turns[2 * head], turns[2 * head + 1])
-        origin = wp.vec2(origins[2 * head], origins[2 * head + 1])
-        for d in range(3):
-            # Edges in turn; beyond the first face the corner opposite the entry is the only one not seen from before
-            c = (entry + d) % 3
-            p = origin + times(turn, corner(record, f, c))
-            if (head == 0 or d == 2) and wp.length_sq(p) <= far * far:
-                v = faces[f, c]
-                k = int(0)
-                while k < seen_count:
-                    if seen[k] == v:
-                        k = MOST
-                    k = k + 1
-                if k < MOST:
-                    seen[seen_count] = v
-                    seen_count = seen_count + 1
-                    if first.shape[0] > 0:
-                        e = first[i] + found
-                        site[e] = v
-                        place[e] = p + middle
-                        if order > 1:
-                            frame[e] = times(turn, axis[f, c])
-                    found = found + 1
-
-            halfedge = twin[f, c]
-            if halfedge >= 0 and queued < MOST and (head == 0 or d > 0):
-                q = origin + times(turn, corner(record, f, (c + 1) % 3))
-                if distance_to(p, q) <= far:
-                    g = halfedge // 3
-                    k = int(0)
-                    while k < queued:
-                        if queue[k] // 3 == g:
-                            k = MOST
-                        k = k + 1
-                    if k < MOST:
-                        onward = times(turn, conjugate(turn_across(record, f, c)))
-                        base = q - times(onward, corner(record, g, halfedge % 3))
-                        queue[queued] = halfedge
-                        turns[2 * queued] = onward[0]
-                        turns[2 * queued + 1] = onward[1]
-                        origins[2 * queued] = base[0]
-                        origins[2 * queued + 1] = base[1]
-                        queued = queued + 1
-        head = head + 1
-    count[i] = found
-
-
-@wp.func
-def side_of(face: wp.array(dtype=int), neighbour: int, inside: bool) -> float:
-    """How far a sample's cell goes towards a neighbour: all the way where that could not be traced."""
-    if not inside:
-        return BORDER
-    if face[neighbour] < 0:
-        return FAR
-    return SIDE
-
-
-@wp.kernel(enable_backward=False)
-def sites_in_cells(
-    start: int,
-    record: wp.array2d(dtype=float),
     order: int,
     width: int,
-    around_first: wp.array(dtype=int),
-    around_count: wp.array(dtype=int),
-    around_site: wp.array(dtype=int),
-    around_place: wp.array(dtype=wp.vec2),
-    around_frame: wp.array(dtype=wp.vec2),
-    face: wp.array(dtype=int),
+    face: wp.array(dtype=int),  # samples
     place: wp.array(dtype=wp.vec3),
     heading: wp.array(dtype=wp.vec2),
-    first: wp.array(dtype=int),  # where each sample's sites go; empty to count only
+    face_table: wp.array2d(dtype=int),
+    site_table: wp.array2d(dtype=int),
+    queue: wp.array2d(dtype=int),  # faces laid flat
+    owner: wp.array2d(dtype=int),  # the sample each is laid around, -1 once another turns out to be nearer,
+    nearness: wp.array2d(dtype=float),  # squared, of the face's middle,
+    turn: wp.array2d(dtype=wp.vec2),  # from the face's frame to that of the patch, in texels,
+    origin: wp.array2d(dtype=wp.vec2),  # and where the face's corner 0 falls
     count: wp.array(dtype=int),
-    site: wp.array(dtype=int),
-    offset: wp.array(dtype=wp.vec2),
-    steps: wp.array(dtype=int),
+    site: wp.array2d(dtype=int),
+    sample: wp.array2d(dtype=int),
+    offset: wp.array2d(dtype=wp.vec2),  # (right, up) in texels
+    frame: wp.array2d(dtype=wp.vec2),  # of the site, in that of the patch
 ):
-    """Sites of every sample's cell: offsets [row, column] in texels, and n-ths of a turn from their own frames."""
-    s = start + wp.tid()
-    count[s] = 0
-    f = face[s]
-    if f < 0:
-        return
-    row = (s // width) % width
-    column = s % width
-    up = side_of(face, s - width, row > 0)
-    down = side_of(face, s + width, row + 1 < width)
-    left = side_of(face, s - 1, column > 0)
-    right = side_of(face, s + 1, column + 1 < width)
+    """Sites of square i: nearest sample of each, and the offset from it; ``count`` is ``FULL`` if the tables are.
 
-    at = place[s]
-    here = at[1] * corner(record, f, 1) + at[2] * corner(record, f, 2)
-    way = wp.vec2(heading[s][0], heading[s][1])
-    to_texels = conjugate(way) / texel_at(record, f, wp.vec3(at[0], at[1], at[2]))
-    found = int(0)
-    for k in range(around_first[f], around_first[f] + around_count[f]):
-        p = times(to_texels, around_place[k] - here)
-        if p[0] >= -left and p[0] <= right and -p[1] >= -up and -p[1] <= down and wp.length_sq(p) <= FAR * FAR:
-            if first.shape[0] > 0:
-                e = first[s] + found
-                site[e] = around_site[k]
-                offset[e] = wp.vec2(-p[1], p[0])
-                if order > 1:
-                    own = around_frame[k]
-                    turn = times(way, conjugate(wp.vec2(own[0], own[1])))
-                    n = wp.round(wp.atan2(turn[1], turn[0]) * float(order) / 6.2831853)
-                    steps[e] = (int(n) + order) % order
-            found = found + 1
-    count[s] = found
+    Faces are laid flat around the samples in them, then around the same sample as a neighbour, first come first
+    served but for a nearer sample; every sample places the corners of its faces. A tie keeps the lowest sample.
+    """
+    i = start + wp.tid()
+    for k in range(face_table.shape[1]):
+        face_table[i, k] = -1
+    for k in range(site_table.shape[1]):
+        site_table[i, k] = -1
+    most_faces = queue.shape[1] - 3
+    most_sites = site.shape[1] - 3
+    queued = int(0)
+    known = int(0)
+
+    samples = width * width
+    for s in range(samples):
+        f = face[i * samples + s]
+        if f >= 0 and known <= most_sites and queued <= most_faces:
+            at = place[i * samples + s]
+            way = heading[i * samples + s]
+            at = wp.vec3(at[0], at[1], at[2])
+            to_patch = conjugate(wp.vec2(way[0], way[1])) / texel_at(record, f, at)
+            base = times(to_patch, -(at[1] * corner(record, f, 1) + at[2] * corner(record, f, 2)))
+            room = room_around(s, width)
+            middle = base
+            for c in range(3):
+                p = base + times(to_patch, corner(record, f, c))
+                middle = middle + (p - base) / 3.0
+                own = times(to_patch, axis[f, c])
+                known = place_site(site_table, site, sample, offset, frame, i, known, faces[f, c], s, p, room, own)
+            slot = slot_of(face_table, queue, i, f)
+            k = face_table[i, slot]
+            near = wp.length_sq(middle)
+            if k < 0 or near < nearness[i, wp.max(k, 0)]:
+                if k < 0:
+                    k = queued
+                    queued = queued + 1
+                    face_table[i, slot] = k
+                    queue[i, k] = f
+                owner[i, k] = s
+                nearness[i, k] = near
+                turn[i, k] = to_patch
+                origin[i, k] = base
+
+    head = int(0)
+    while head < queued and known <= most_sites and queued <= most_faces:
+        s = owner[i, head]
+        if s >= 0:
+            f = queue[i, head]
+            to_patch = turn[i, head]
+            to_patch = wp.vec2(to_patch[0], to_patch[1])
+            base = origin[i, head]
+            base = wp.vec2(base[0], base[1])
+            room = room_around(s, width)
+            for e in range(3):
+                halfedge = twin[f, e]
+                if halfedge >= 0:
+                    p = base + times(to_patch, corner(record, f, e))
+                    q = base + times(to_patch, corner(record, f, (e + 1) % 3))
+                    out = wp.max(p[0], q[0]) < -room[0] or wp.min(p[0], q[0]) > room[1]
+                    out = out or wp.max(p[1], q[1]) < -room[2] or wp.min(p[1], q[1]) > room[3]
+                    if not out and distance_to(p, q) <= FAR * FAR:
+                        g = halfedge // 3
+                        t = halfedge - 3 * g
+                        onward = times(to_patch, conjugate(turn_across(record, f, e)))
+                        beyond = q - times(onward, corner(record, g, t))
+                        c = (t + 2) % 3
+                        r = beyond + times(onward, corner(record, g, c))
+                        near = wp.length_sq((p + q + r) / 3.0)
+                        slot = slot_of(face_table, queue, i, g)
+                        k = face_table[i, slot]
+                        if k < 0 or near < nearness[i, wp.max(k, 0)]:
+                            if k >= 0:
+                                owner[i, k] = -1
+                            face_table[i, slot] = queued
+                            queue[i, queued] = g
+                            owner[i, queued] = s
+                            nearness[i, queued] = near
+                            turn[i, queued] = onward
+                            origin[i, queued] = beyond
+                            queued = queued + 1
+                            own = times(onward, axis[g, c])
+                            known = place_site(
+                                site_table, site, sample, offset, frame, i, known, faces[g, c], s, r, room, own
+                            )
+        head = head + 1
+    count[i] = wp.where(known > most_sites or queued > most_faces, FULL, known)
 
 
 @wp.kernel(enable_backward=False)
-def nearest_of_patch(
+def collect_entries(
     start: int,
-    samples: int,  # of a patch
-    first: wp.array(dtype=int),  # of each site, in ``order``
-    order: wp.array(dtype=int),
-    sample: wp.array(dtype=int),
-    offset: wp.array(dtype=wp.vec2),
-    keep: wp.array(dtype=wp.uint8),
+    order: int,
+    width: int,
+    first: wp.array(dtype=int),  # place of each square's entries, one more at the end
+    sites: wp.array2d(dtype=int),
+    sample: wp.array2d(dtype=int),
+    offset: wp.array2d(dtype=wp.vec2),
+    frame: wp.array2d(dtype=wp.vec2),
+    site: wp.array(dtype=int),
+    position: wp.array(dtype=wp.vec2),
+    steps: wp.array(dtype=wp.int8),
 ):
-    """Of a site's entries from one patch keep the one whose sample is nearest; ties keep the first."""
+    """The entries of all squares one after the other: [row, column] in the patch, n-ths of a turn from the site."""
     i = start + wp.tid()
-    best = int(-1)
-    patch = int(-1)
-    least = float(0.0)
-    for k in range(first[i], first[i + 1]):
-        e = order[k]
-        distance = wp.length_sq(offset[e])
-        p = sample[e] // samples
-        if p != patch or distance < least:
-            if p == patch:
-                keep[best] = wp.uint8(0)
-            keep[k] = wp.uint8(1)
-            best = k
-            patch = p
-            least = distance
+    for k in range(first[i + 1] - first[i]):
+        e = first[i] + k
+        s = sample[i, k]
+        site[e] = sites[i, k]
+        position[e] = wp.vec2(float(s // width) - offset[i, k][1], float(s % width) + offset[i, k][0])
+        if order > 1:
+            n = -wp.round(wp.atan2(frame[i, k][1], frame[i, k][0]) * float(order) / 6.2831853)
+            steps[e] = wp.int8((int(n) + order) % order)
+
+
+@wp.kernel(enable_backward=False)
+def group_cover(
+    start: int,
+    site_count: int,
+    parts: int,
+    first: wp.array(dtype=int),  # of each patch's entries
+    site: wp.array(dtype=int),
+    position: wp.array(dtype=wp.vec2),
+    steps: wp.array(dtype=wp.int8),
+    turn_of: wp.array(dtype=float),
+    free: wp.array(dtype=int),  # the next place of each site; used up
+    cover_patch: wp.array(dtype=int),
+    cover_position: wp.array(dtype=wp.vec2),
+    cover_turn: wp.array(dtype=float),
+):
+    """The last pass of a counting sort: item i moves the entries of its share of the sites, patches increasing."""
+    i = start + wp.tid()
+    lowest = int(wp.int64(i) * wp.int64(site_count) / wp.int64(parts))
+    end = int(wp.int64(i + 1) * wp.int64(site_count) / wp.int64(parts))
+    for p in range(first.shape[0] - 1):
+        for e in range(first[p], first[p + 1]):
+            s = site[e]
+            if s >= lowest and s < end:
+                at = free[s]
+                free[s] = at + 1
+                cover_patch[at] = p
+                cover_position[at] = position[e]
+                if cover_turn.shape[0] > 0:
+                    cover_turn[at] = turn_of[int(steps[e])]

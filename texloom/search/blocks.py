@@ -24,7 +24,7 @@ class BlockSearch:
     width: int
     mask: Bool[np.ndarray, "row column"] | None = None
     step: int = 4  # texels
-    shortlist: int = 12
+    shortlist: int = 8
     stride: int = 2  # samples
 
     @cached_property
@@ -90,6 +90,7 @@ class BlockSearch:
                 self.usable,
             ],
             outputs=[best, cost],
+            grain=4,
         )
         return best, cost
 

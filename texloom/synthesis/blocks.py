@@ -30,7 +30,7 @@ from texloom.synthesis.usage import Usage
 _CHOICE = 0xB10C  # purpose of the draws that choose a block where nothing is known yet
 _TYPICAL = 200  # the typical mismatch is that of the best 1 / 200 of all candidates
 _LEAST = 1e-8  # mismatch taken for typical where everything fits, as on a constant sample
-_FINALISTS = 6  # candidates whose seams are cut
+_FINALISTS = 4  # candidates whose seams are cut
 _FLOOR = 0.7  # of the typical mismatch: fits better than this count alike
 _SEAM_FLOOR = 0.3  # of the finalists' mean seam cost, likewise
 
@@ -119,6 +119,7 @@ class BlockGrowth:
                 *(fours(values), known, fours(self.search.image)),
             ],
             outputs=[*scratch, seam, cost],
+            grain=4,
         )
         return seam, cost
 

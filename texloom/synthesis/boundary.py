@@ -2,7 +2,7 @@
 
 import time
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from jaxtyping import Int32
@@ -23,10 +23,12 @@ from texloom.search.matching import Search
 from texloom.search.principal import PcaNearest
 from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.layers import feathered
-from texloom.synthesis.least_squares import fill_unknown
+from texloom.synthesis.least_squares import Stage, check_room, fill_unknown
 from texloom.synthesis.reading import read
 from texloom.synthesis.result import Result
 from texloom.synthesis.schedule import batches, breadth_first, overlaps
+
+Order = Literal["random", "breadth-first"]
 
 _START = 0xB0DA  # purpose of the draws of the first texels
 _ORDER = 0xB0DB  # purpose of the draws of the order
@@ -51,15 +53,20 @@ class BoundarySampling:
     patch: int = 32  # texels per side
     zone: int = 4  # texels: the boundary's width w_E
     steps: tuple[int, ...] = (4, 2, 1)  # reductions of the levels, coarse to fine
-    order: Literal["random", "breadth-first"] = "random"
+    order: Order = "random"
     search: Search = PcaNearest()
     dimensions: int = 4  # of appearance vectors, beside the feature distance
 
     def __post_init__(self) -> None:
-        if self.patch % max(self.steps) or self.patch // max(self.steps) < 4:
-            raise ParameterError(f"patch {self.patch} must be a multiple of {max(self.steps)} and 4 times it or more")
-        if self.steps[-1] != 1:
-            raise ParameterError(f"steps {self.steps} must end at 1, the finest level")
+        falling = sorted({2 ** int(step).bit_length() // 2 for step in self.steps}, reverse=True)
+        if list(self.steps) != falling or self.steps[-1:] != (1,):
+            raise ParameterError(f"steps {self.steps} must be falling powers of two that end at 1, as in (4, 2, 1)")
+        if self.patch % self.steps[0] or self.patch // self.steps[0] < 4:
+            raise ParameterError(f"patch {self.patch} must be a multiple of {self.steps[0]} and 4 times it or more")
+        if not 1 <= self.zone <= self.patch // 2:
+            raise ParameterError(f"zone {self.zone} must be 1 or more and at most half of patch {self.patch}")
+        if self.order not in get_args(Order):
+            raise ParameterError(f"unknown order {self.order!r}: choose one of {', '.join(get_args(Order))}")
 
     def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
         """All levels in turn; see ``synthesize``."""
@@ -75,6 +82,7 @@ class BoundarySampling:
 
     def analyse(self, exemplar: Exemplar) -> Analysis:
         """Everything learnt from the exemplar; it can be saved and used again."""
+        check_room(exemplar, [Stage(step, self.patch // step) for step in self.steps])
         analysis = analyse(exemplar, levels=max(self.steps).bit_length(), dimensions=self.dimensions)
         for step in self.steps:
             self._index(analysis, step)

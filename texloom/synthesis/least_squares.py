@@ -1,6 +1,7 @@
 """Texture optimization as published: nearest patches and least squares by turns, coarse to fine."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,7 @@ from texloom import draws
 from texloom.arrays import fours, in_fours
 from texloom.domain.domain import Domain
 from texloom.domain.patches import Patches
-from texloom.errors import ParameterError
+from texloom.errors import ExemplarError, ParameterError
 from texloom.exemplar.exemplar import Exemplar
 from texloom.exemplar.patches import even_samples
 from texloom.kernels.averaging import average_patches
@@ -34,6 +35,12 @@ class Stage:
 
     step: int
     width: int
+
+    def __post_init__(self) -> None:
+        if self.step < 1 or self.step & (self.step - 1) or self.width < 1:
+            raise ParameterError(
+                f"a stage of step {self.step}, width {self.width}: use step 1, 2, 4, ... and width 1 or more"
+            )
 
     @property
     def extent(self) -> int:
@@ -68,6 +75,12 @@ class LeastSquares:
     samples: int = 8
     dimensions: int = 4  # of appearance vectors, beside the feature distance
 
+    def __post_init__(self) -> None:
+        if not self.schedule:
+            raise ParameterError("an empty schedule has nothing to do: give one stage or more")
+        if self.iterations < 1 or self.samples < 1:
+            raise ParameterError(f"iterations {self.iterations} and samples {self.samples} must be 1 or more")
+
     def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
         """All stages in turn; see ``synthesize``."""
         clock = time.perf_counter()
@@ -88,7 +101,8 @@ class LeastSquares:
 
     def analyse(self, exemplar: Exemplar) -> Analysis:
         """Everything learnt from the exemplar, indices of all stages included; it can be saved and used again."""
-        levels = 1 + max(stage.step for stage in self.schedule).bit_length() - 1
+        check_room(exemplar, self.schedule)
+        levels = max(stage.step for stage in self.schedule).bit_length()
         analysis = analyse(exemplar, levels=levels, dimensions=self.dimensions)
         for stage in self.schedule:
             self._index(analysis, stage)
@@ -140,6 +154,18 @@ class LeastSquares:
 
     def _index(self, analysis: Analysis, stage: Stage):
         return analysis.index(self.search, stage.step.bit_length() - 1, stage.width, self._samples(stage))
+
+
+def check_room(exemplar: Exemplar, schedule: Sequence[Stage]) -> None:
+    """Raises: ExemplarError, unless the patches of all stages fit into the exemplar's levels."""
+    side = min(exemplar.shape)
+    for stage in schedule:
+        if -(-side // stage.step) < stage.width:
+            rows, columns = exemplar.shape
+            raise ExemplarError(
+                f"the exemplar is {columns}x{rows} texels, but a patch needs {stage.extent}x{stage.extent}: "
+                "use smaller patches or a larger sample"
+            )
 
 
 def lay(domain: Domain, extent: int, seed: int) -> Patches:

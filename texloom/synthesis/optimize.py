@@ -4,9 +4,9 @@ import time
 from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import UInt8
+from jaxtyping import Int32, UInt8
 
-from texloom.arrays import in_fours
+from texloom.arrays import Image, in_fours
 from texloom.domain.domain import Domain
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Exemplar
@@ -30,21 +30,21 @@ class Optimize:
 
     start: PatchSampling = field(default_factory=PatchSampling)
     width: int = 5  # texels per side of the neighbourhoods compared, odd
-    alike: int = 2  # k: alike texels tried beside the neighbours' own
+    alike: int = 0  # k of k-coherence: alike texels tried too; 2 lowers the energy by a tenth and doubles the time
     passes: int = 2
     reach: int = 3  # steps from the blocks' borders that are corrected
 
     def __post_init__(self) -> None:
         if self.width < 3 or self.width % 2 == 0:
             raise ParameterError(f"width {self.width} must be odd and 3 or more")
-        if self.passes < 0 or self.reach < 0 or self.alike < 1:
-            raise ParameterError(f"passes {self.passes} and reach {self.reach} must be 0 or more, alike {self.alike} 1")
+        if min(self.passes, self.reach, self.alike) < 0:
+            raise ParameterError(f"passes {self.passes}, reach {self.reach} and alike {self.alike} must be 0 or more")
 
     def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
         """Cover the domain with blocks, then correct their borders; see ``synthesize``."""
         clock = [time.perf_counter()]
         image = in_fours(match_image(exemplar))
-        similar = most_alike(image, self.alike, usable=exemplar.mask)
+        similar = self._similar(image, exemplar)
         clock.append(time.perf_counter())
         canvas, count, seconds = self.start.lay(exemplar, image, domain, seed=seed, report=report)
         clock.append(time.perf_counter())
@@ -55,6 +55,12 @@ class Optimize:
         analysis, laying, correcting = np.diff(clock).tolist()
         seconds |= {"analysis": analysis, "blocks": laying - seconds["patches"], "correction": correcting}
         return Result(canvas.sources(), tuple(energy), seconds, "passes", count)
+
+    def _similar(self, image: Image, exemplar: Exemplar) -> Int32[np.ndarray, "row column k 2"]:
+        """The k-coherence candidates of every texel; none where k is 0."""
+        if self.alike == 0:
+            return np.zeros((*image.shape[:2], 0, 2), np.int32)
+        return most_alike(image, self.alike, usable=exemplar.mask)
 
     def _usable(self, image: np.ndarray, exemplar: Exemplar) -> UInt8[np.ndarray, "row column"]:
         """Texels around which a whole neighbourhood, and one texel more for fractions, lies in the exemplar."""

@@ -2,7 +2,7 @@
 
 import time
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from jaxtyping import Int32
@@ -47,8 +47,10 @@ class PatchSampling:
             raise ParameterError(f"patch {self.patch} is too small: use {2 * _STEP} texels or more")
         if not 0 < self.overlap <= 0.5:
             raise ParameterError(f"overlap {self.overlap} must be above 0 and at most 0.5 of the patch")
-        if self.balance < 0:
+        if not self.balance >= 0:
             raise ParameterError(f"balance {self.balance} must be 0 or more")
+        if self.order not in get_args(Order):
+            raise ParameterError(f"unknown order {self.order!r}: choose one of {', '.join(get_args(Order))}")
 
     def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
         """Cover the domain once; see ``synthesize``."""
