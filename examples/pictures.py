@@ -74,18 +74,18 @@ def sites(surface: Surface) -> SurfaceSites:
 
 
 def beside(*pictures: Picture, gap: int = _GAP) -> Picture:
-    """Pictures in a row, aligned at the bottom, on white."""
+    """Pictures in a row, smaller ones half-way up, on white."""
     return _joined(pictures, gap, axis=1)
 
 
 def below(*pictures: Picture, gap: int = _GAP) -> Picture:
-    """Pictures in a column, aligned at the left, on white."""
+    """Pictures in a column, smaller ones half-way across, on white."""
     return _joined(pictures, gap, axis=0)
 
 
 def inset(picture: Picture, sample: Picture, side: int = 132) -> Picture:
     """A picture with the sample it was grown from, reduced, in its lower right corner."""
-    step = max(1, sample.shape[0] // side)
+    step = -(-sample.shape[0] // side)
     rows, columns = (size // step for size in sample.shape[:2])
     small = sample[: rows * step, : columns * step].reshape(rows, step, columns, step, 3).mean(axis=(1, 3))
     framed = np.pad(small.astype(np.uint8), ((3, 3), (3, 3), (0, 0)), constant_values=255)
@@ -95,14 +95,14 @@ def inset(picture: Picture, sample: Picture, side: int = 132) -> Picture:
 
 
 def _joined(pictures: Sequence[Picture], gap: int, *, axis: int) -> Picture:
-    """Along an axis with gaps; smaller ones are filled up with white, before them in rows and after them in columns."""
+    """Along an axis with gaps, centred across it."""
     across = 1 - axis
     largest = max(picture.shape[across] for picture in pictures)
     parts = []
     for number, picture in enumerate(pictures):
         missing = largest - picture.shape[across]
         pad = [(0, 0), (0, 0), (0, 0)]
-        pad[across] = (missing, 0) if axis == 1 else (0, missing)
+        pad[across] = (missing // 2, missing - missing // 2)
         pad[axis] = (gap if number else 0, 0)
         parts.append(np.pad(picture, pad, constant_values=255))
     return np.concatenate(parts, axis=axis)

@@ -18,7 +18,7 @@ Cover = tuple[
 """Start, patch, position and turn, as in ``Patches``."""
 
 _LEAST_ROOM = 4  # sites, and faces, for each sample of a patch: enough at two sites a texel
-_SHARES = 64  # of the sites, grouped at the same time
+_SHARES = 1  # of the sites, grouped at the same time
 
 
 @dataclass(eq=False)
@@ -123,15 +123,19 @@ class _Tables:
     """Room for the kernel to work in: for each patch of a batch so many faces and sites, and hash tables of them."""
 
     def __init__(self, patches: int, room: int) -> None:
-        slots = 1 << (2 * room - 1).bit_length()
-        shape = (patches, room)
+        faces, sites = (patches, 2 * room), (patches, room)
         self.patches, self.room = patches, room
         self.scratch = [
-            *(np.empty((patches, slots), np.int32), np.empty((patches, slots), np.int32)),
-            *(np.empty(shape, np.int32), np.empty(shape, np.int32), np.empty(shape, np.float32)),
-            *(np.empty((*shape, 2), np.float32), np.empty((*shape, 2), np.float32)),
+            *(np.empty(_slots(faces), np.int32), np.empty(_slots(sites), np.int32)),
+            *(np.empty(faces, np.int32), np.empty(faces, np.int32), np.empty(faces, np.float32)),
+            *(np.empty((*faces, 2), np.float32), np.empty((*faces, 2), np.float32)),
         ]
         self.found = [
-            *(np.empty(shape, np.int32), np.empty(shape, np.int32)),
-            *(np.empty((*shape, 2), np.float32), np.empty((*shape, 2), np.float32)),
+            *(np.empty(sites, np.int32), np.empty(sites, np.int32)),
+            *(np.empty((*sites, 2), np.float32), np.empty((*sites, 2), np.float32)),
         ]
+
+
+def _slots(shape: tuple[int, int]) -> tuple[int, int]:
+    """Of hash tables at most half full: a power of two."""
+    return shape[0], 1 << (2 * shape[1] - 1).bit_length()

@@ -6,8 +6,11 @@ import warp as wp
 
 from texloom.kernels.trace import conjugate, corner, texel_at, times, turn_across
 
+wp.set_module_options({"cpu_compiler_flags": f"{wp.config.cpu_compiler_flags} -funsafe-math-optimizations"})
+
 FAR = wp.constant(1.0)  # texels from a sample to the farthest site it can place
 BORDER = wp.constant(0.5)  # half a cell, at the border of the patch
+NEARER = wp.constant(0.02)  # a face changes hands only for that much, in squared texels
 FULL = wp.constant(-1)  # count of a patch whose tables were too small
 
 
@@ -15,9 +18,9 @@ FULL = wp.constant(-1)  # count of a patch whose tables were too small
 def slot_of(table: wp.array2d(dtype=int), keys: wp.array2d(dtype=int), i: int, key: int) -> int:
     """Where a key stands in hash table i, or would: a row of numbers into ``keys[i]``, -1 where free."""
     mask = table.shape[1] - 1
-    slot = int((wp.uint32(key) * wp.uint32(2654435761)) >> wp.uint32(15)) & mask
+    slot = int((wp.uint32(key) * wp.uint32(1640531527)) >> wp.uint32(15)) & mask
     for _ in range(table.shape[1]):
-        k = table[i, slot]
+        k = int(table[i, slot])
         if k < 0:
             return slot
         if keys[i, k] == key:
@@ -67,7 +70,7 @@ def place_site(
     if distance > FAR * FAR or p[0] < -room[0] or p[0] > room[1] or p[1] < -room[2] or p[1] > room[3]:
         return count
     slot = slot_of(site_table, site, i, v)
-    k = site_table[i, slot]
+    k = int(site_table[i, slot])
     known = int(count)
     if k < 0:
         k = count
@@ -141,7 +144,7 @@ def cover_squares(
                 own = times(to_patch, axis[f, c])
                 known = place_site(site_table, site, sample, offset, frame, i, known, faces[f, c], s, p, room, own)
             slot = slot_of(face_table, queue, i, f)
-            k = face_table[i, slot]
+            k = int(face_table[i, slot])
             near = wp.length_sq(middle)
             if k < 0 or near < nearness[i, wp.max(k, 0)]:
                 if k < 0:
@@ -156,45 +159,39 @@ def cover_squares(
 
     head = int(0)
     while head < queued and known <= most_sites and queued <= most_faces:
-        s = owner[i, head]
-        if s >= 0:
-            f = queue[i, head]
-            to_patch = turn[i, head]
-            to_patch = wp.vec2(to_patch[0], to_patch[1])
-            base = origin[i, head]
-            base = wp.vec2(base[0], base[1])
-            room = room_around(s, width)
-            for e in range(3):
-                halfedge = twin[f, e]
-                if halfedge >= 0:
+        s = int(owner[i, head])
+        f = int(queue[i, head])
+        to_patch = turn[i, head]
+        to_patch = wp.vec2(to_patch[0], to_patch[1])
+        base = origin[i, head]
+        base = wp.vec2(base[0], base[1])
+        room = room_around(s, width)
+        for e in range(3):
+            halfedge = twin[f, e]
+            if halfedge >= 0:
+                g = halfedge // 3
+                slot = slot_of(face_table, queue, i, g)
+                if face_table[i, slot] < 0:
                     p = base + times(to_patch, corner(record, f, e))
                     q = base + times(to_patch, corner(record, f, (e + 1) % 3))
                     out = wp.max(p[0], q[0]) < -room[0] or wp.min(p[0], q[0]) > room[1]
                     out = out or wp.max(p[1], q[1]) < -room[2] or wp.min(p[1], q[1]) > room[3]
                     if not out and distance_to(p, q) <= FAR * FAR:
-                        g = halfedge // 3
-                        t = halfedge - 3 * g
                         onward = times(to_patch, conjugate(turn_across(record, f, e)))
+                        t = halfedge - 3 * g
                         beyond = q - times(onward, corner(record, g, t))
-                        c = (t + 2) % 3
+                        face_table[i, slot] = queued
+                        queue[i, queued] = g
+                        owner[i, queued] = s
+                        turn[i, queued] = onward
+                        origin[i, queued] = beyond
+                        queued = queued + 1
+                        c = wp.where(t == 0, 2, t - 1)
                         r = beyond + times(onward, corner(record, g, c))
-                        near = wp.length_sq((p + q + r) / 3.0)
-                        slot = slot_of(face_table, queue, i, g)
-                        k = face_table[i, slot]
-                        if k < 0 or near < nearness[i, wp.max(k, 0)]:
-                            if k >= 0:
-                                owner[i, k] = -1
-                            face_table[i, slot] = queued
-                            queue[i, queued] = g
-                            owner[i, queued] = s
-                            nearness[i, queued] = near
-                            turn[i, queued] = onward
-                            origin[i, queued] = beyond
-                            queued = queued + 1
-                            own = times(onward, axis[g, c])
-                            known = place_site(
-                                site_table, site, sample, offset, frame, i, known, faces[g, c], s, r, room, own
-                            )
+                        own = times(onward, axis[g, c])
+                        known = place_site(
+                            site_table, site, sample, offset, frame, i, known, faces[g, c], s, r, room, own
+                        )
         head = head + 1
     count[i] = wp.where(known > most_sites or queued > most_faces, FULL, known)
 

@@ -12,7 +12,7 @@ face -1. Branches that depend on the place are avoided: a wrong guess costs as m
 
 import warp as wp
 
-wp.set_module_options({"cpu_compiler_flags": f"{wp.config.cpu_compiler_flags} -ffast-math -fno-slp-vectorize"})
+wp.set_module_options({"cpu_compiler_flags": f"{wp.config.cpu_compiler_flags} -funsafe-math-optimizations -fno-slp-vectorize"})
 
 MOST_FACES = wp.constant(256)  # crossed for one sample
 FAINTEST = wp.constant(0.05)  # power below this has no direction: a singularity

@@ -7,8 +7,11 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int32
 
 from texloom.arrays import Image, fours
+from texloom.exemplar.blas import over_blocks
 from texloom.kernels.launch import launch
 from texloom.kernels.patches import refine_anchors
+
+_BLOCK = 1024  # candidates compared at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,7 +20,7 @@ class BlockSearch:
 
     Cost is the mean squared difference over the known samples. All blocks at multiples of ``step`` texels are compared
     on averages of ``step × step`` texels (|e|² m − 2 e·(m x), one matrix product); the ``shortlist`` best are moved by
-    up to ``step // 2`` texels on every ``stride``-th sample. ``width`` is a multiple of ``step``.
+    up to ``step // 2`` texels, compared at every so many samples. ``width`` is a multiple of ``step``.
     """
 
     image: Image
@@ -25,7 +28,6 @@ class BlockSearch:
     mask: Bool[np.ndarray, "row column"] | None = None
     step: int = 4  # texels
     shortlist: int = 8
-    stride: int = 2  # samples
 
     @cached_property
     def usable(self) -> np.ndarray:
@@ -64,7 +66,14 @@ class BlockSearch:
         total = values.reshape(*blocks, -1).mean((2, 4)).reshape(*share.shape, -1)
         own = (total * total).sum(2) / np.maximum(share, 1e-6)
         texels, squares = self._coarse
-        cost = share @ squares.T - 2 * (total.reshape(len(values), -1) @ texels.T) + own.sum(1)[:, None]
+        cross = total.reshape(len(values), -1)
+        cost = np.empty((len(values), len(squares)), np.float32)
+
+        def compare(first: int, last: int) -> None:
+            cost[:, first:last] = share @ squares[first:last].T - 2 * (cross @ texels[first:last].T)
+
+        over_blocks(compare, len(squares), _BLOCK)
+        cost += own.sum(1)[:, None]
         return np.maximum(cost, 0) / np.maximum(share.sum(1), 1e-6)[:, None]
 
     def refine(
@@ -83,7 +92,7 @@ class BlockSearch:
                 near,
                 self.step // 2,
                 self.width,
-                self.stride,
+                self.step // 2,
                 fours(values),
                 known,
                 fours(self.image),

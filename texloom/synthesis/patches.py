@@ -25,6 +25,7 @@ from texloom.synthesis.seams import ring
 Order = Literal["scan", "breadth-first", "random"]
 
 _STEP = 4  # texels; patches are a whole number of steps wide
+_LARGE = 384  # texels: samples with this shorter side or more are searched in double steps first
 _LARGEST = 64  # texels: larger blocks would show as copies
 
 
@@ -70,7 +71,8 @@ class PatchSampling:
         shared = overlaps(patches)
         groups = batches(self.ordered(patches, shared, seed), shared)
         seconds = {"patches": time.perf_counter() - start}
-        search = BlockSearch(image, width, exemplar.mask, step=_STEP)
+        step = 2 * _STEP if min(exemplar.shape) >= _LARGE and width % (2 * _STEP) == 0 else _STEP
+        search = BlockSearch(image, width, exemplar.mask, step=step)
         if not len(search.anchors):
             raise ExemplarError(f"no {width}x{width} block lies inside the mask: lower patch, or widen the mask")
         canvas = Canvas.empty(domain.count, image.shape[2])
