@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float, UInt8
 
-import texloom
 from texloom.domain.surface import Surface
 from texloom.exemplar.exemplar import Exemplar, Map
 from texloom.output.atlas import bake, lay_atlas
@@ -46,7 +45,9 @@ def coat(surface: Surface, sources: SourceMap, exemplar: Exemplar, views: Sequen
     atlas = lay_atlas(sites(surface), uv, size=_ATLAS, tangents=tangents)
     maps = bake(sources, atlas, {name: exemplar.maps[name] for name in ("basecolor", "normal")})
     skin = Skin(texture=maps["basecolor"].image, uv=uv, bumps=maps["normal"].image, tangents=tangents)
-    pictures = [preview(mesh.vertices, mesh.faces, skin, normals=mesh.vertex_normals, size=_SIDE, views=[v]) for v in views]
+    pictures = [
+        preview(mesh.vertices, mesh.faces, skin, normals=mesh.vertex_normals, size=_SIDE, views=[v]) for v in views
+    ]
     return beside(*(picture[:, _MARGIN:-_MARGIN] for picture in pictures), gap=0)
 
 

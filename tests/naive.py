@@ -51,7 +51,7 @@ def seam_costs(
 
 
 def cheapest_path(cost: ndarray) -> tuple[float, ndarray]:
-    """Least cost over the steps of paths that move at most one deep each step, and the path; the shallowest of equals."""
+    """Least cost over the steps of paths moving at most one deep a step, and the path; the shallowest of equals."""
     best = cost[0].astype(float)
     back = []
     for row in cost[1:]:

@@ -28,5 +28,7 @@ def picture(detail: float = 1.0) -> Picture:
     sample = stained(256)
     result = texloom.synthesize(sample, texloom.Grid(rows, columns), seed=5)
     return beside(
-        of_map(sample.lead), of_map(to_map(sample.usable[..., None], "data")), shown(result.sources, sample, (rows, columns))
+        of_map(sample.lead),
+        of_map(to_map(sample.usable[..., None], "data")),
+        shown(result.sources, sample, (rows, columns)),
     )

@@ -14,7 +14,7 @@ from texloom.demo import draw
 def picture(detail: float = 1.0) -> Picture:
     """A tile and its repetition; ``detail`` scales its side."""
     side = round(256 * detail)
-    sample = draw("bricks", size=192)
+    sample = draw("knit", size=192)
     result = texloom.synthesize(sample, texloom.Grid(side, side, wrap=True), seed=3)
     tile = shown(result.sources, sample, (side, side))
     return beside(tile, np.tile(tile, (2, 3, 1)))

@@ -1,6 +1,6 @@
 """Fields of different symmetry.
 
-A field of one direction a point cannot be smooth all over a closed surface; lines and crosses can be smoother, for their
+A field of one direction cannot be smooth all over a closed surface; lines and crosses can be smoother, for their
 singularities are halves and quarters. A weave looks the same after a quarter turn, so crosses suit it: left arrows,
 middle lines, right crosses.
 

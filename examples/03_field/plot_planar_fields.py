@@ -18,8 +18,13 @@ SAMPLES = ("scales", "weave")
 
 def picture(detail: float = 1.0) -> Picture:
     """Two samples along four fields; ``detail`` scales the sides."""
-    side = round(360 * detail)
-    fields = (uniform(side, side, np.radians(30)), radial(side, side), sine(side, side), ring(side, side))
+    side = round(336 * detail)
+    fields = (
+        uniform(side, side, np.radians(30)),
+        radial(side, side),
+        sine(side, side, waves=1.5, height=0.05),
+        ring(side, side),
+    )
     rows = []
     for name in SAMPLES:
         sample = draw(name, size=160)

@@ -18,7 +18,7 @@ def picture(detail: float = 1.0) -> Picture:
     """A row for each sample; ``detail`` scales the results' sides."""
     side = round(384 * detail)
     rows = []
-    for name in ("scales", "bricks"):
+    for name in ("scales", "pebbles"):
         sample = draw(name, size=128)
         methods = [texloom.LeastSquares(schedule=schedule) for schedule in SCHEDULES]
         results = [texloom.synthesize(sample, texloom.Grid(side, side), method, seed=1) for method in methods]

@@ -10,7 +10,7 @@ from jaxtyping import Complex64, Int32
 from texloom.domain.patches import Patches
 from texloom.domain.reach import Covering
 from texloom.field.trace import Flow, Samples, starts
-from texloom.kernels.launch import launch
+from texloom.kernels.launch import launch, thread_count
 from texloom.kernels.trace import meet_half_way, trace_squares
 
 APART_AT_LEAST, APART_PER_TEXEL = 1.5, 0.2
@@ -20,8 +20,8 @@ Where a field of curvature k turns, legs of u and v texels end k u v apart and h
 crowd by k u / 2 and k v / 2: a tenth of a texel when the second term is spent. Past both, patches would fold.
 """
 
-_SAMPLES_AT_ONCE = 1 << 18
-"""Traced and covered together: few enough to stay in a cache, enough for every thread."""
+_PATCHES_A_THREAD, _MOST_SAMPLES = 32, 1 << 19
+"""Traced and covered together: few enough that their tables stay in a cache, enough to keep every thread busy."""
 
 
 def lay_patches(
@@ -37,12 +37,15 @@ def lay_patches(
     sites = np.empty((count, square, 3), np.int32)
     weights = np.empty((count, square, 3), np.float32)
     covering = Covering(flow, width, axis)
-    batch = max(1, _SAMPLES_AT_ONCE // square)
+    origins = starts(flow)
+    batch = max(1, min(_PATCHES_A_THREAD * max(2, thread_count()), _MOST_SAMPLES // square))
     for begin in range(0, count, batch):
-        samples = trace_network(flow, centres[begin : begin + batch], width)
-        reached = samples.face >= 0
-        samples.place[~reached] = 0
-        sites[begin : begin + batch] = np.where(reached[:, None], flow.faces[samples.face], -1).reshape(-1, square, 3)
+        samples = trace_network(flow, origins, centres[begin : begin + batch], width)
+        missed = samples.face < 0
+        corners = sites[begin : begin + batch].reshape(-1, 3)
+        np.take(flow.faces, samples.face, axis=0, out=corners, mode="wrap")
+        corners[missed] = -1
+        samples.place[missed] = 0
         weights[begin : begin + batch] = samples.place.reshape(-1, square, 3)
         covering.add(samples)
     start, patch, position, turn = covering.cover()
@@ -58,11 +61,10 @@ def lay_patches(
     )
 
 
-def trace_network(flow: Flow, centres: Int32[np.ndarray, "patch"], width: int) -> Samples:
+def trace_network(flow: Flow, origins: Samples, centres: Int32[np.ndarray, "patch"], width: int) -> Samples:
     """The samples of all patches, row-major; face -1 where neither path arrives or the two disagree."""
     count, middle = len(centres), width // 2 * (width + 1)
     samples = Samples.empty(2 * count * width * width)
-    origins = starts(flow)
     centre = np.arange(middle, 2 * count * width * width, width * width)
     samples.face[centre] = np.tile(origins.face[centres], 2)
     samples.place[centre] = np.tile(origins.place[centres], (2, 1))

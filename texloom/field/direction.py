@@ -14,6 +14,8 @@ import numpy as np
 from jaxtyping import Complex64, Complex128, Float, Float64, Int32
 
 from texloom.errors import FieldError
+from texloom.kernels.frames import lay_into_faces
+from texloom.kernels.launch import launch
 from texloom.mesh.mesh import Mesh
 
 ORDERS = (1, 2, 4, 6)
@@ -138,14 +140,11 @@ def tangent_part(
 
 def corner_directions(mesh: Mesh, tangents: Float64[np.ndarray, "vertex 3"]) -> Complex128[np.ndarray, "face 3"]:
     """A tangent vector of each vertex as unit complex numbers in the frames of the faces around it (0 stays 0)."""
-    # R t = t - (n · t) (N + n) / (1 + N · n) takes a tangent t of normal N to one of normal n
-    t, big, n = tangents[mesh.faces], mesh.vertex_normals[mesh.faces], mesh.face_normals[:, None]
-    cosine = np.maximum(np.sum(big * n, axis=2, keepdims=True), -0.999)
-    turned = t - np.sum(n * t, axis=2, keepdims=True) / (1.0 + cosine) * (big + n)
-    xy = np.einsum("fad,fcd->fca", mesh.face_frames, turned)
-    value = xy[..., 0] + 1j * xy[..., 1]
-    length = np.abs(value)
-    return np.divide(value, length, out=np.zeros_like(value), where=length > 0)
+    directions = np.empty((len(mesh.faces), 3), np.complex128)
+    inputs = [mesh.faces, mesh.face_frames, mesh.vertex_normals, np.ascontiguousarray(tangents, np.float64)]
+    outputs = [directions.view(np.float64).reshape(-1, 3, 2)]
+    launch(lay_into_faces, len(mesh.faces), inputs=inputs, outputs=outputs)
+    return directions
 
 
 def sum_at_vertices(mesh: Mesh, corners: Complex128[np.ndarray, "face 3"]) -> Complex128[np.ndarray, "vertex"]:

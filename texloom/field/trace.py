@@ -3,13 +3,13 @@
 A mesh, a plane and a torus become the same thing here, a ``Flow``; nothing that walks it knows which it was.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Complex, Float, Float32, Int32
 
 from texloom.field.direction import DirectionField
+from texloom.kernels.frames import flatten_triangles, pack_records
 from texloom.kernels.launch import launch
 from texloom.kernels.trace import trace_lines
 from texloom.mesh.mesh import Mesh
@@ -40,16 +40,14 @@ class Flow:
 
 def surface_flow(mesh: Mesh, field: DirectionField, texel: Float[np.ndarray, "vertex"]) -> Flow:
     """The flow of a field on a mesh; ``texel`` is the world length of a texel at every vertex."""
-    first, second, third = mesh.vertices[mesh.faces].transpose(1, 0, 2)
-    x_axis, y_axis = mesh.face_frames.transpose(1, 0, 2)
-    corners = np.stack([_dot(second - first, x_axis), _dot(third - first, x_axis), _dot(third - first, y_axis)], axis=1)
-    corners[:, 2] = np.maximum(corners[:, 2], 1e-6 * corners[:, 0])  # a needle keeps a height to divide by
-    twin = np.ascontiguousarray(mesh.twins.reshape(-1, 3))
+    corners = np.empty((len(mesh.faces), 3))
+    launch(flatten_triangles, len(corners), inputs=[mesh.vertices, mesh.faces], outputs=[corners])
+    twin = mesh.twins.reshape(-1, 3)
     return Flow(
         order=field.order,
-        faces=np.ascontiguousarray(mesh.faces),
+        faces=mesh.faces,
         twin=twin,
-        record=_pack(corners, field.power, texel[mesh.faces], twin),
+        record=_pack(corners, field.power, texel, mesh.faces, twin),
         position=(mesh.vertices - mesh.vertices.mean(axis=0)).astype(np.float32),
     )
 
@@ -83,7 +81,7 @@ def planar_flow(
         order=order,
         faces=faces,
         twin=twin,
-        record=_pack(corners, power, texel.ravel()[faces], twin),
+        record=_pack(corners, power, texel.ravel(), faces, twin),
         position=np.pad(place, ((0, 0), (0, 1))).astype(np.float32),
         period=(float(columns), float(rows), 0.0) if wrap else (0.0, 0.0, 0.0),
     )
@@ -137,35 +135,19 @@ def follow(
     launch(trace_lines, len(first), inputs=inputs, outputs=[samples.face, samples.place, samples.heading])
 
 
-def spokes(width: int) -> Iterator[tuple[int, int, int]]:
-    """The four ways out of the middle of a row-major square: (stride, steps, quarters)."""
-    before, after = width // 2, width - 1 - width // 2
-    yield from ((-width, before, 1), (width, after, 3), (-1, before, 2), (1, after, 0))
-
-
-def _dot(a: Float[np.ndarray, "n d"], b: Float[np.ndarray, "n d"]) -> Float[np.ndarray, "n"]:
-    return np.einsum("nd,nd->n", a, b)
-
-
 def _pack(
     corners: Float[np.ndarray, "face 3"],
     power: Complex[np.ndarray, "face 3"],
-    texel: Float[np.ndarray, "face 3"],
+    texel: Float[np.ndarray, "site"],
+    faces: Int32[np.ndarray, "face 3"],
     twin: Int32[np.ndarray, "face 3"],
 ) -> Float32[np.ndarray, "face 24"]:
     """The kernels' record of every triangle."""
-    a, b, c = corners.T
-    edge = np.stack([a + 0j, (b - a) + 1j * c, -b - 1j * c], axis=1)
-    edge /= np.abs(edge)
-    across = -edge.ravel()[twin] * np.conj(edge)  # the twin runs the other way; unused at a boundary
-    inverse = np.stack([1 / a, b / (a * c), 1 / c], axis=1)
-    parts = [corners, _pairs(power), texel, _pairs(across), inverse, np.zeros_like(inverse)]
-    return np.ascontiguousarray(np.concatenate(parts, axis=1), np.float32)
-
-
-def _pairs(numbers: Complex[np.ndarray, "face 3"]) -> Float[np.ndarray, "face 6"]:
-    """Complex numbers as (re, im)."""
-    return np.stack([np.real(numbers), np.imag(numbers)], axis=2).reshape(-1, 6)
+    record = np.empty((len(faces), 24), np.float32)
+    pairs = np.ascontiguousarray(power, np.complex64).view(np.float32).reshape(-1, 3, 2)
+    inputs = [np.ascontiguousarray(corners, np.float64), pairs, np.ascontiguousarray(texel, np.float32), faces, twin]
+    launch(pack_records, len(faces), inputs=inputs, outputs=[record])
+    return record
 
 
 def _lattice_twins(rows: int, columns: int, *, wrap: bool) -> Int32[np.ndarray, "face 3"]:

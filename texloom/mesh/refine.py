@@ -33,7 +33,7 @@ class _Faces:
     parent: np.ndarray  # (face,)
 
     def __getitem__(self, chosen: np.ndarray) -> "_Faces":
-        return _Faces(self.vertices[chosen], self.barycentric[chosen], self.parent[chosen])
+        return _Faces(*(np.take(part, chosen, axis=0) for part in (self.vertices, self.barycentric, self.parent)))
 
 
 def refine(mesh: Mesh, length: float | Float[np.ndarray, "vertex"]) -> Refined:
@@ -101,8 +101,9 @@ def _squared_sides(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Squared length of the side from each corner to the next; both faces of an edge find the same."""
     squared = np.zeros(faces.shape)
     for axis in range(3):
-        corners = np.ascontiguousarray(vertices[:, axis])[faces]
-        squared += (corners[:, [1, 2, 0]] - corners) ** 2
+        corners = np.take(np.ascontiguousarray(vertices[:, axis]), faces)
+        for side in range(3):
+            squared[:, side] += (corners[:, (side + 1) % 3] - corners[:, side]) ** 2
     return squared
 
 
@@ -187,7 +188,8 @@ def _into_three(faces: _Faces, middles: np.ndarray, vertices: np.ndarray) -> _Fa
 
 def _into_four(faces: _Faces, middles: np.ndarray, vertices: np.ndarray) -> _Faces:
     """Three corners and the middle."""
-    points, places = _turned(faces, middles, np.zeros(len(middles), np.int64))
+    points = np.concatenate([faces.vertices, middles], axis=1)
+    places = _with_middles(faces.barycentric)
     return _cut(points, places, faces.parent, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 
 
@@ -198,14 +200,25 @@ def _turned(faces: _Faces, middles: np.ndarray, first: np.ndarray) -> tuple[np.n
     points = np.concatenate(
         [np.take_along_axis(faces.vertices, turn, axis=1), np.take_along_axis(middles, turn, axis=1)], axis=1
     )
-    return points, np.concatenate([corners, 0.5 * (corners + corners[:, [1, 2, 0]])], axis=1)
+    return points, _with_middles(corners)
+
+
+def _with_middles(corners: np.ndarray) -> np.ndarray:
+    """Three corners and the middles of their sides."""
+    places = np.empty((len(corners), 6, 3), corners.dtype)
+    places[:, :3] = corners
+    for side in range(3):
+        places[:, 3 + side] = 0.5 * (corners[:, side] + corners[:, (side + 1) % 3])
+    return places
 
 
 def _cut(points: np.ndarray, places: np.ndarray, parent: np.ndarray, pattern: list[list[int]]) -> _Faces:
     """Children by a pattern of the six points; the children of a face stay together."""
-    chosen = np.array(pattern)
+    chosen = np.ravel(pattern)
     return _Faces(
-        points[:, chosen].reshape(-1, 3), places[:, chosen].reshape(-1, 3, 3), np.repeat(parent, len(pattern))
+        np.take(points, chosen, axis=1).reshape(-1, 3),
+        np.take(places, chosen, axis=1).reshape(-1, 3, 3),
+        np.repeat(parent, len(pattern)),
     )
 
 

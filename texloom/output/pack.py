@@ -9,6 +9,9 @@ import numpy as np
 from jaxtyping import Float, Float64, Int, Int32
 from numpy.lib.stride_tricks import sliding_window_view
 
+from texloom.kernels.launch import launch
+from texloom.kernels.pack import drop_charts
+
 _CELLS = 1024.0  # about a side of the square: fine enough for narrow gutters, coarse enough to be quick
 _FULL = 1.25  # the square may turn out this much larger
 _ANGLES = 24  # turns tried to find a chart's smallest box
@@ -114,13 +117,15 @@ def _best_packing(outlines: list[_Outline], area: float) -> tuple[Float64[np.nda
 def _drop(outlines: list[_Outline], width: int) -> tuple[Float64[np.ndarray, "chart 2"], int]:
     """Place of every chart (lower left cell) in a strip, and the height of the strip."""
     heights = np.array([outline.top.max() for outline in outlines])
-    skyline = np.zeros(width, np.int32)
-    places = np.zeros((len(outlines), 2))
-    for number in np.argsort(-heights, kind="stable"):
-        outline = outlines[number]
-        windows = sliding_window_view(skyline, len(outline.bottom))
-        rest = np.maximum((windows - outline.bottom).max(axis=1), 0)
-        column = int(np.argmin(rest))
-        places[number] = column, rest[column]
-        skyline[column : column + len(outline.bottom)] = rest[column] + outline.top
-    return places, int(skyline.max())
+    first = np.cumsum([0] + [len(outline.bottom) for outline in outlines]).astype(np.int32)
+    skyline, places = np.zeros(width, np.int32), np.empty((len(outlines), 2), np.int32)
+    launch(
+        drop_charts,
+        1,
+        inputs=[
+            *(np.argsort(-heights, kind="stable").astype(np.int32), first),
+            *(np.concatenate([np.asarray(getattr(o, side), np.int32) for o in outlines]) for side in ("bottom", "top")),
+        ],
+        outputs=[skyline, places],
+    )
+    return places.astype(np.float64), int(skyline.max())
