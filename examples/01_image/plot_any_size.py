@@ -11,7 +11,7 @@ import texloom
 from examples.pictures import Picture, below, beside, of_map, shown
 from texloom.demo import draw
 
-SAMPLES = ("scales", "pebbles")
+SAMPLES = ("scales", "bricks")
 
 
 def picture(detail: float = 1.0) -> Picture:

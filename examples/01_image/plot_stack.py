@@ -14,7 +14,7 @@ MAPS = ("basecolor", "normal", "roughness", "height", "ao")
 def picture(detail: float = 1.0) -> Picture:
     """Five maps of one result; ``detail`` scales its sides."""
     rows, columns = round(400 * detail), round(300 * detail)
-    sample = draw("weave", size=224)
-    result = texloom.synthesize(sample, texloom.Grid(rows, columns, wrap=True), seed=2)
+    sample = draw("scales", size=224)
+    result = texloom.synthesize(sample, texloom.Grid(rows, columns), seed=2)
     maps = texloom.gather_images(result.sources, sample, rows=rows, columns=columns)
     return beside(*(of_map(maps[name]) for name in MAPS))

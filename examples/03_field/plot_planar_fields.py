@@ -13,7 +13,7 @@ from examples.pictures import Picture, below, beside, shown
 from texloom.demo import draw
 from texloom.field.planar import radial, ring, sine, uniform
 
-SAMPLES = ("scales", "weave")
+SAMPLES = ("bricks", "weave")
 
 
 def picture(detail: float = 1.0) -> Picture:

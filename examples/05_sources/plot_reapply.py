@@ -24,6 +24,6 @@ def picture(detail: float = 1.0) -> Picture:
     """Two materials on one set of sources; ``detail`` scales their sides."""
     rows, columns = round(448 * detail), round(640 * detail)
     sample = draw("bricks", size=256)
-    sources = texloom.synthesize(sample, texloom.Grid(rows, columns), seed=8).sources
+    sources = texloom.synthesize(sample, texloom.Grid(rows, columns), seed=3).sources
     stacks = (sample, painted(sample))
     return beside(*(inset(shown(sources, stack, (rows, columns)), of_map(stack.lead)) for stack in stacks))

@@ -22,6 +22,7 @@ from texloom.synthesis.synthesize import Method, synthesize
 
 METHODS: dict[str, Method] = {
     "optimize": Optimize(),
+    "k-coherence": Optimize(alike=2),
     "patches": PatchSampling(),
     "least-squares": LeastSquares(schedule=(Stage(2, 8), Stage(1, 8)), iterations=3),
     "boundary": BoundarySampling(patch=16, zone=3, steps=(2, 1)),

@@ -6,7 +6,7 @@ from math import ceil, log2, sqrt
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, UInt8
 
 from texloom.domain.surface import Surface
 from texloom.exemplar.exemplar import Exemplar, Map, to_map
@@ -42,17 +42,7 @@ class Grown:
     @property
     def sites(self) -> SurfaceSites:
         """The surface as outputs need it."""
-        refined = self.surface.refined
-        return SurfaceSites(
-            vertices=refined.mesh.vertices,
-            faces=refined.mesh.faces,
-            direction=self.surface.direction,
-            normal=self.surface.normal,
-            texel=self.surface.texel,
-            scale=self.surface.scale,
-            parent=refined.parent,
-            corners=refined.corner_barycentric,
-        )
+        return SurfaceSites.of(self.surface)
 
 
 @dataclass(frozen=True)
@@ -64,22 +54,21 @@ class AtlasWish:
     fresh: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Homecoming:
-    """Files written; whose UVs were used and the atlas on them ("" and None for vertex colours)."""
+    """Files written, what the mesh now shows, whose UVs it took and the atlas on them ("", None: vertex colours)."""
 
     files: list[Path]
+    skin: Skin
     uv: str = ""
     atlas: Atlas | None = None
 
 
-def bring_home(
-    grown: Grown, output: Path, *, home: str, atlas: AtlasWish, preview: Path | None, settings: Mapping[str, str]
-) -> Homecoming:
-    """Write the textured mesh, and a picture of it where one is asked for."""
+def bring_home(grown: Grown, output: Path, *, home: str, atlas: AtlasWish, settings: Mapping[str, str]) -> Homecoming:
+    """Write the textured mesh."""
     if home == "vertex":
-        files = [write_vertex_colours(output, grown.sites, grown.sources, grown.exemplar, settings=settings)]
-        return Homecoming(files + _write_preview(preview, grown, _coloured(grown)))
+        written = write_vertex_colours(output, grown.sites, grown.sources, grown.exemplar, settings=settings)
+        return Homecoming([written], _coloured(grown))
     uv, whose = _choose_uv(grown, atlas)
     mesh = grown.model.mesh
     tangents = corner_tangents(mesh.vertices, mesh.faces, uv, normals=mesh.vertex_normals[mesh.faces])
@@ -87,8 +76,21 @@ def bring_home(
     laid = lay_atlas(grown.sites, uv, size=size, gutter=atlas.gutter, tangents=tangents)
     maps = bake(grown.sources, laid, grown.exemplar.maps)
     files = _write_mesh(output, grown.model, maps, uv, tangents, fresh=whose != "own", settings=settings)
-    files += _write_preview(preview, grown, _baked(maps, uv, tangents))
-    return Homecoming(files, f"{whose}, {size}×{size}", laid)
+    return Homecoming(files, _baked(maps, uv, tangents), f"{whose}, {size}×{size}", laid)
+
+
+def picture(grown: Grown, skin: Skin) -> UInt8[np.ndarray, "row column 3"]:
+    """The mesh from four sides, as it is stored; skins of vertex colours are for the sites."""
+    if skin.uv is not None:
+        mesh = grown.model.mesh
+        return preview(mesh.vertices, mesh.faces, skin, normals=mesh.vertex_normals)
+    sites = grown.sites
+    return preview(sites.vertices, sites.faces, skin, normals=sites.shown_normal)
+
+
+def write_preview(path: Path, grown: Grown, skin: Skin) -> Path:
+    """A picture from four sides."""
+    return write_image(path, to_map(picture(grown, skin), "colour"))
 
 
 def _choose_uv(grown: Grown, wish: AtlasWish) -> tuple[Float[np.ndarray, "face 3 2"], str]:
@@ -145,12 +147,3 @@ def _baked(maps: Mapping[str, Map], uv: Float[np.ndarray, "face 3 2"], tangents:
     colours = linear_rgba(image.reshape(-1, image.shape[2]))[:, :3].reshape(*image.shape[:2], 3)
     normal = maps.get("normal")
     return Skin(texture=colours, uv=uv, bumps=None if normal is None else normal.image, tangents=tangents)
-
-
-def _write_preview(path: Path | None, grown: Grown, skin: Skin) -> list[Path]:
-    """A picture from four sides."""
-    if path is None:
-        return []
-    mesh = grown.model.mesh if skin.uv is not None else grown.surface.refined.mesh
-    picture = preview(mesh.vertices, mesh.faces, skin, normals=mesh.vertex_normals)
-    return [write_image(path, to_map(picture, "colour"))]

@@ -63,7 +63,7 @@ def _grow_image(folder: Path, exemplar: "Exemplar", shape: tuple[int, int], seed
 
 def _grow_coat(mesh: Path, name: str, exemplar: "Exemplar", seed: int, session: Session) -> None:
     """The mesh in a coat of texture, upright, and its preview."""
-    from texloom.cli.bring_home import AtlasWish, Grown, bring_home
+    from texloom.cli.bring_home import AtlasWish, Grown, bring_home, write_preview
     from texloom.domain.surface import Surface, texel_for_repeats
     from texloom.field.smooth import smoothest
     from texloom.io.mesh import read_mesh
@@ -73,12 +73,12 @@ def _grow_coat(mesh: Path, name: str, exemplar: "Exemplar", seed: int, session: 
     texel = texel_for_repeats(model.mesh, _REPEATS, exemplar.shape[1])
     surface = Surface.build(model.mesh, smoothest(model.mesh, 1), texel=texel)
     result = synthesize(exemplar, surface, seed=seed, report=session.report)
+    grown = Grown(model, surface, result.sources, exemplar)
     home = bring_home(
-        Grown(model, surface, result.sources, exemplar),
+        grown,
         mesh.with_name(f"{mesh.stem}-{name}.glb"),
         home="atlas",
         atlas=AtlasWish(),
-        preview=mesh.with_name(f"{mesh.stem}-{name}.png"),
         settings=options.settings("demo", Path(name), seed=seed),
     )
-    session.wrote(home.files)
+    session.wrote([*home.files, write_preview(mesh.with_name(f"{mesh.stem}-{name}.png"), grown, home.skin)])

@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float64, Int64
+from jaxtyping import Float64, Int64, Shaped
 
 from texloom.errors import FieldError
 from texloom.field.arrows import Arrow, Placed, place
@@ -22,7 +22,7 @@ def placed_arrows(path: Path, model: Model) -> Placed:
 
     Raises: FileError, if it cannot be read; FieldError, naming the arrow that is wrong.
     """
-    origin, vertex = _origins(model)
+    origin, vertex = origins(model)
     vertex_of = dict(zip(origin.tolist(), vertex.tolist(), strict=True))
 
     def brought(number: int, arrow: Arrow) -> Arrow:
@@ -46,7 +46,7 @@ def vertex_rows(path: Path, model: Model, *, columns: int) -> Float64[np.ndarray
     Raises: FileError, if it cannot be read; FieldError, if it does not fit the mesh.
     """
     rows = read_rows(path)
-    origin, vertex = _origins(model)
+    origin, _ = origins(model)
     if rows.shape[1] != columns:
         raise FieldError(f"{path.name} has {rows.shape[1]} numbers a row: give {columns} for each vertex")
     if len(rows) <= origin.max():
@@ -54,12 +54,18 @@ def vertex_rows(path: Path, model: Model, *, columns: int) -> Float64[np.ndarray
             f"{path.name} has {len(rows)} rows, but faces use vertices up to {origin.max()} (counted from 0): "
             "give one row for each vertex"
         )
-    values = np.empty((len(model.mesh.vertices), columns))
+    return on_mesh(rows, model)
+
+
+def on_mesh(rows: Shaped[np.ndarray, "origin *width"], model: Model) -> Shaped[np.ndarray, "vertex *width"]:
+    """Values at the vertices of the mesh's file, at the vertices of the mended mesh."""
+    origin, vertex = origins(model)
+    values = np.empty((len(model.mesh.vertices), *rows.shape[1:]), rows.dtype)
     values[vertex] = rows[origin]
     return values
 
 
-def _origins(model: Model) -> tuple[Int64[np.ndarray, "pair"], Int64[np.ndarray, "pair"]]:
+def origins(model: Model) -> tuple[Int64[np.ndarray, "pair"], Int64[np.ndarray, "pair"]]:
     """Vertices of the file and the vertices of the mended mesh they became, each pair once."""
     pairs = np.stack([model.corner_origin.ravel(), model.mesh.faces.ravel()], axis=1).astype(np.int64)
     origin, vertex = np.unique(pairs, axis=0).T

@@ -6,10 +6,12 @@ from typing import Annotated
 import typer
 
 from texloom.cli import methods, options
+from texloom.cli.analyses import check_analysis, with_analysis
 from texloom.cli.session import Session
 
 
 def image(
+    context: typer.Context,
     samples: options.Samples,
     output: Annotated[Path, typer.Option("--output", "-o", help="An image, or a folder for a stack of maps.")],
     size: Annotated[str, typer.Option(metavar="W[xH]", help="Texels.")] = "512",
@@ -20,8 +22,11 @@ def image(
     method: options.Method = None,
     search: options.Search = None,
     preset: options.Preset = None,
+    analysis: options.AnalysisFile = None,
+    mask: options.Mask = None,
     seed: options.Seed = 0,
     sources: options.SourcesOut = None,
+    report: options.Report = None,
     directx_normals: options.DirectX = False,
     device: options.Device = "cpu",
     threads: options.Threads = None,
@@ -31,7 +36,9 @@ def image(
     rows, columns = options.parse_size(size)
     wanted = methods.wish(method, search, preset)
     path = options.only_sample(samples)
-    options.check_output(output, sources)
+    check_analysis(analysis, preset)
+    options.check_report(report)
+    options.check_output(output, sources, report, analysis)
 
     with Session(device=device, threads=threads, as_json=as_json) as session:
         with session.stage("read"):
@@ -43,20 +50,31 @@ def image(
             from texloom.output.sources_file import SavedSources, save_sources
             from texloom.synthesis.synthesize import synthesize
 
-            exemplar = read_exemplar(path, directx_normals=directx_normals)
+            exemplar = read_exemplar(path, mask=mask, directx_normals=directx_normals)
             domain = plane(rows, columns, field=field, tileable=tileable)
             if options.is_file(output):
                 single_map(exemplar.maps, output)
             chosen = wanted.build()
+        if analysis is not None:
+            chosen = with_analysis(chosen, analysis, exemplar, session)
         result = synthesize(exemplar, domain, chosen, seed=seed, report=session.report)
-        session.seconds.update(result.seconds)
-        settings = options.settings("image", path, method=chosen, seed=seed, size=size, tileable=tileable, field=field)
+        session.add(result.seconds)
+        settings = options.settings(
+            "image", path, method=chosen, seed=seed, size=size, tileable=tileable, field=field, mask=mask
+        )
         with session.stage("write"):
             maps = gather_images(result.sources, exemplar, rows=rows, columns=columns)
             session.wrote(write_images(output, maps, settings=settings))
             if sources is not None:
                 kept = SavedSources(result.sources, image_domain(rows, columns, exemplar), settings)
                 session.wrote(save_sources(sources, kept))
+        if report is not None:
+            with session.stage("report"):
+                from texloom.cli.reports import Run, of_image
+                from texloom.output.report import write_report
+
+                run = Run(exemplar, result, settings, dict(session.seconds), options.command_line(context))
+                session.wrote(write_report(report, of_image(run, domain, maps)))
         session.finish(
             {
                 "method": wanted.method,

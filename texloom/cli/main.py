@@ -55,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not sys.warnoptions:
         warnings.simplefilter("ignore")  # a library's doubts are no part of our one line
     try:
-        status = app(arguments, prog_name="texloom", standalone_mode=False)
+        status = app(arguments, prog_name="texloom", standalone_mode=False, obj=arguments)
     except (KeyboardInterrupt, typer.Abort):
         status = INTERRUPTED
     except TexloomError as error:

@@ -1,5 +1,6 @@
 """Options that several commands share, and the names they accept."""
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
@@ -30,6 +31,12 @@ Device = Annotated[str, typer.Option(metavar="NAME", help="cpu or cuda.")]
 Threads = Annotated[int | None, typer.Option(metavar="N", min=1, max=1024, help="CPU threads; all cores if not given.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")]
 DirectX = Annotated[bool, typer.Option("--directx-normals", help="The sample's normal map has green down.")]
+Mask = Annotated[Path | None, typer.Option(metavar="FILE", help="An image, white where the sample is used.")]
+AnalysisFile = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="With --preset: what is learnt from the sample, read if there, else saved."),
+]
+Report = Annotated[Path | None, typer.Option(metavar="FILE", help="All about the run on one page (.html).")]
 SourcesOut = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Save the sources too (.npz), for `texloom apply`.")
 ]
@@ -70,9 +77,20 @@ def check_output(*paths: Path | None) -> None:
             raise ParameterError(f"{path}: there is no folder {path.parent}: make it first, or choose another place")
 
 
+def check_report(report: Path | None) -> None:
+    """Refuse a report that no browser would open."""
+    if report is not None and report.suffix.lower() not in (".html", ".htm"):
+        raise ParameterError(f"--report {report.name}: a report is a page, name it .html")
+
+
 def is_file(output: Path) -> bool:
     """Whether an output path names a single image rather than a folder."""
     return output.suffix.lower() in IMAGE_SUFFIXES or bool(output.suffix and not output.is_dir())
+
+
+def command_line(context: typer.Context) -> str:
+    """The words of this run, as a shell takes them."""
+    return shlex.join(["texloom", *(str(word) for word in context.find_root().obj or ())])
 
 
 def settings(command: str, sample: Path, **facts: object) -> dict[str, str]:

@@ -71,6 +71,11 @@ class Session:
         yield
         self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - started
 
+    def add(self, seconds: Mapping[str, float]) -> None:
+        """Stages that the library has timed itself."""
+        for name, value in seconds.items():
+            self.seconds[name] = self.seconds.get(name, 0.0) + value
+
     def wrote(self, paths: Path | Iterable[Path]) -> None:
         """Remember files that now exist."""
         _written.extend([paths] if isinstance(paths, Path) else paths)

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from texloom.cli import methods, options
+from texloom.cli.analyses import check_analysis, with_analysis
 from texloom.cli.session import Session
 from texloom.errors import ParameterError
 
@@ -14,6 +15,7 @@ _REPEATS = 3.0  # sample widths across the mesh where neither --repeats nor --te
 
 
 def surface(
+    context: typer.Context,
     mesh: Annotated[Path, typer.Argument(metavar="MESH", help="OBJ, PLY, OFF, STL, GLB or glTF.")],
     samples: options.Samples,
     output: Annotated[Path, typer.Option("--output", "-o", help="A .glb, .obj or .ply.")],
@@ -44,8 +46,11 @@ def surface(
     method: options.Method = None,
     search: options.Search = None,
     preset: options.Preset = None,
+    analysis: options.AnalysisFile = None,
+    mask: options.Mask = None,
     seed: options.Seed = 0,
     sources: options.SourcesOut = None,
+    report: options.Report = None,
     directx_normals: options.DirectX = False,
     device: options.Device = "cpu",
     threads: options.Threads = None,
@@ -57,7 +62,9 @@ def surface(
     path = options.only_sample(samples)
     if repeats is not None and texel is not None:
         raise ParameterError("--repeats and --texel both set the size of the texture: give one of them")
-    options.check_output(output, preview, sources)
+    check_analysis(analysis, preset)
+    options.check_report(report)
+    options.check_output(output, preview, sources, report, analysis)
 
     with Session(device=device, threads=threads, as_json=as_json) as session:
         with session.stage("read"):
@@ -70,7 +77,7 @@ def surface(
             from texloom.output.sources_file import SavedSources, save_sources
             from texloom.synthesis.synthesize import synthesize
 
-            exemplar = read_exemplar(path, directx_normals=directx_normals)
+            exemplar = read_exemplar(path, mask=mask, directx_normals=directx_normals)
             model = read_mesh(mesh, material=material)
         with session.stage("field"):
             field = direction_field(model, direction, order=symmetry)
@@ -79,8 +86,10 @@ def surface(
             length = texel or texel_for_repeats(model.mesh, repeats or _REPEATS, exemplar.shape[1])
             domain = Surface.build(model.mesh, field, texel=length, scale=sizes)
             chosen = wanted.build()
+        if analysis is not None:
+            chosen = with_analysis(chosen, analysis, exemplar, session)
         result = synthesize(exemplar, domain, chosen, seed=seed, report=session.report)
-        session.seconds.update(result.seconds)
+        session.add(result.seconds)
         settings = options.settings(
             "surface",
             path,
@@ -91,20 +100,30 @@ def surface(
             direction=direction,
             scale=scale,
             symmetry=symmetry,
+            mask=mask,
         )
+        grown = bring_home.Grown(model, domain, result.sources, exemplar)
         with session.stage("write"):
             homecoming = bring_home.bring_home(
-                bring_home.Grown(model, domain, result.sources, exemplar),
+                grown,
                 output,
                 home=chosen_home,
                 atlas=bring_home.AtlasWish(atlas_size, gutter, fresh_atlas),
-                preview=preview,
                 settings=settings,
             )
             session.wrote(homecoming.files)
+            if preview is not None:
+                session.wrote(bring_home.write_preview(preview, grown, homecoming.skin))
             if sources is not None:
-                kept = surface_domain(homecoming.atlas, exemplar)
+                kept = surface_domain(domain, homecoming.atlas, exemplar)
                 session.wrote(save_sources(sources, SavedSources(result.sources, kept, settings)))
+        if report is not None:
+            with session.stage("report"):
+                from texloom.cli.reports import Run, of_surface
+                from texloom.output.report import write_report
+
+                run = Run(exemplar, result, settings, dict(session.seconds), options.command_line(context))
+                session.wrote(write_report(report, of_surface(run, grown, homecoming.skin)))
         session.finish(
             {
                 "method": wanted.method,

@@ -18,12 +18,11 @@ Cover = tuple[
 """Start, patch, position and turn, as in ``Patches``."""
 
 _LEAST_ROOM = 4  # sites, and faces, for each sample of a patch: enough at two sites a texel
-_SHARES = 1  # of the sites, grouped at the same time
 
 
 @dataclass(eq=False)
 class Covering:
-    """Every site's position in every patch: that of the patch's nearest sample, and the offset from it.
+    """Every site's position in every patch: that of the patch's nearest sample around it, and the offset from that.
 
     ``axis`` is the site's frame at every face corner, as a direction in the face. Patches are added in batches, in
     order; ``cover`` turns them inside out.
@@ -43,7 +42,7 @@ class Covering:
     _tables: "_Tables | None" = None
 
     def add(self, samples: Samples) -> None:
-        """The next patches, one or more; cost about half that of tracing them."""
+        """The next patches; about half the cost of tracing them."""
         flow, samples_of_patch = self.flow, self.width * self.width
         patches = len(samples.face) // samples_of_patch
         if self._tables is None or self._tables.patches < patches:
@@ -85,9 +84,9 @@ class Covering:
         turn = np.empty(total if order > 1 else 0, np.float32)
         launch(
             group_cover,
-            _SHARES,
+            1,
             inputs=[
-                *(site_count, _SHARES, first, entries.site, entries.position, entries.steps),
+                *(first, entries.site, entries.position, entries.steps),
                 (steps * (2 * np.pi / order)).astype(np.float32),
             ],
             outputs=[start[:-1].copy(), patch, position, turn],

@@ -6,11 +6,13 @@ import warp as wp
 
 from texloom.kernels.trace import conjugate, corner, texel_at, times, turn_across
 
-wp.set_module_options({"cpu_compiler_flags": f"{wp.config.cpu_compiler_flags} -funsafe-math-optimizations"})
+# Products and sums may fuse, divisions by one number share its inverse: a quarter of the time
+wp.set_module_options(
+    {"cpu_compiler_flags": f"{wp.config.cpu_compiler_flags or '-march=native'} -funsafe-math-optimizations"}
+)
 
 FAR = wp.constant(1.0)  # texels from a sample to the farthest site it can place
 BORDER = wp.constant(0.5)  # half a cell, at the border of the patch
-NEARER = wp.constant(0.02)  # a face changes hands only for that much, in squared texels
 FULL = wp.constant(-1)  # count of a patch whose tables were too small
 
 
@@ -39,7 +41,7 @@ def distance_to(p: wp.vec2, q: wp.vec2) -> float:
 
 @wp.func
 def room_around(s: int, width: int) -> wp.vec4:
-    """How far the cell of a sample goes: left, right, down, up; its neighbours will cut it."""
+    """How far the cell of a sample may go: left, right, down, up; its neighbours' cells will cut it."""
     row = (s // width) % width
     column = s % width
     return wp.vec4(
@@ -102,8 +104,8 @@ def cover_squares(
     face_table: wp.array2d(dtype=int),
     site_table: wp.array2d(dtype=int),
     queue: wp.array2d(dtype=int),  # faces laid flat
-    owner: wp.array2d(dtype=int),  # the sample each is laid around, -1 once another turns out to be nearer,
-    nearness: wp.array2d(dtype=float),  # squared, of the face's middle,
+    owner: wp.array2d(dtype=int),  # the sample each is laid around,
+    nearness: wp.array2d(dtype=float),  # squared, of the middle of a face that holds a sample,
     turn: wp.array2d(dtype=wp.vec2),  # from the face's frame to that of the patch, in texels,
     origin: wp.array2d(dtype=wp.vec2),  # and where the face's corner 0 falls
     count: wp.array(dtype=int),
@@ -112,10 +114,11 @@ def cover_squares(
     offset: wp.array2d(dtype=wp.vec2),  # (right, up) in texels
     frame: wp.array2d(dtype=wp.vec2),  # of the site, in that of the patch
 ):
-    """Sites of square i: nearest sample of each, and the offset from it; ``count`` is ``FULL`` if the tables are.
+    """Sites of square i: the nearest sample of each, and the offset from it; ``count`` is ``FULL`` if the tables are.
 
-    Faces are laid flat around the samples in them, then around the same sample as a neighbour, first come first
-    served but for a nearer sample; every sample places the corners of its faces. A tie keeps the lowest sample.
+    A face is laid flat around the sample in it that is nearest to its middle, a face without one around the sample of
+    the neighbour that reaches it first, breadth first. A sample places the corners of its own face and of those laid
+    around it; a tie keeps the lowest sample.
     """
     i = start + wp.tid()
     for k in range(face_table.shape[1]):
@@ -225,8 +228,6 @@ def collect_entries(
 @wp.kernel(enable_backward=False)
 def group_cover(
     start: int,
-    site_count: int,
-    parts: int,
     first: wp.array(dtype=int),  # of each patch's entries
     site: wp.array(dtype=int),
     position: wp.array(dtype=wp.vec2),
@@ -237,17 +238,13 @@ def group_cover(
     cover_position: wp.array(dtype=wp.vec2),
     cover_turn: wp.array(dtype=float),
 ):
-    """The last pass of a counting sort: item i moves the entries of its share of the sites, patches increasing."""
-    i = start + wp.tid()
-    lowest = int(wp.int64(i) * wp.int64(site_count) / wp.int64(parts))
-    end = int(wp.int64(i + 1) * wp.int64(site_count) / wp.int64(parts))
+    """The last pass of a counting sort, one thread: entries by site, patches increasing within a site."""
     for p in range(first.shape[0] - 1):
         for e in range(first[p], first[p + 1]):
             s = site[e]
-            if s >= lowest and s < end:
-                at = free[s]
-                free[s] = at + 1
-                cover_patch[at] = p
-                cover_position[at] = position[e]
-                if cover_turn.shape[0] > 0:
-                    cover_turn[at] = turn_of[int(steps[e])]
+            at = int(free[s])
+            free[s] = at + 1
+            cover_patch[at] = p
+            cover_position[at] = position[e]
+            if cover_turn.shape[0] > 0:
+                cover_turn[at] = turn_of[int(steps[e])]

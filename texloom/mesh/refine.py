@@ -157,7 +157,7 @@ def _children(faces: _Faces, middles: np.ndarray, vertices: np.ndarray) -> _Face
     """Cut each face at the middles of its split sides (-1: not split)."""
     split = middles >= 0
     number = split.sum(axis=1)
-    parts = [faces[number == 0]]  # their long sides wait for a longer one next door
+    parts = [faces[np.flatnonzero(number == 0)]]  # their long sides wait for a longer one next door
     for count, cut in ((1, _into_two), (2, _into_three), (3, _into_four)):
         chosen = np.flatnonzero(number == count)
         if len(chosen):
@@ -175,7 +175,7 @@ def _into_three(faces: _Faces, middles: np.ndarray, vertices: np.ndarray) -> _Fa
     """Cut off the corner between the two split sides, and the rest along its shorter diagonal."""
     whole_side = np.argmin(middles >= 0, axis=1)
     points, places = _turned(faces, middles, (whole_side + 1) % 3)  # split: a-b (m = 3) and b-c (n = 4)
-    ends = vertices[points]
+    ends = np.take(vertices, points, axis=0)
     to_c = ((ends[:, 3] - ends[:, 2]) ** 2).sum(axis=1)
     to_a = ((ends[:, 4] - ends[:, 0]) ** 2).sum(axis=1)
     through_c = to_c <= to_a

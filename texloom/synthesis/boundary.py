@@ -1,7 +1,7 @@
 """Patch-based sampling as published: patches matched on their boundary zones, pasted in random order, blended."""
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, get_args
 
 import numpy as np
@@ -18,12 +18,12 @@ from texloom.exemplar.patches import boundary_samples
 from texloom.kernels.launch import launch
 from texloom.kernels.patches import paste_blocks
 from texloom.progress import Report
-from texloom.search.analysis import Analysis, analyse
+from texloom.search.analysis import Analysis
 from texloom.search.matching import Search
 from texloom.search.principal import PcaNearest
 from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.layers import feathered
-from texloom.synthesis.least_squares import Stage, check_room, fill_unknown
+from texloom.synthesis.least_squares import Stage, check_room, fill_unknown, known_or_new
 from texloom.synthesis.reading import read
 from texloom.synthesis.result import Result
 from texloom.synthesis.schedule import batches, breadth_first, overlaps
@@ -56,6 +56,8 @@ class BoundarySampling:
     order: Order = "random"
     search: Search = PcaNearest()
     dimensions: int = 4  # of appearance vectors, beside the feature distance
+    analysis: Analysis | None = field(default=None, repr=False, compare=False)
+    """What was learnt from the exemplar before; None: learn it."""
 
     def __post_init__(self) -> None:
         falling = sorted({2 ** int(step).bit_length() // 2 for step in self.steps}, reverse=True)
@@ -83,7 +85,8 @@ class BoundarySampling:
     def analyse(self, exemplar: Exemplar) -> Analysis:
         """Everything learnt from the exemplar; it can be saved and used again."""
         check_room(exemplar, [Stage(step, self.patch // step) for step in self.steps])
-        analysis = analyse(exemplar, levels=max(self.steps).bit_length(), dimensions=self.dimensions)
+        levels = max(self.steps).bit_length()
+        analysis = known_or_new(self.analysis, exemplar, levels=levels, dimensions=self.dimensions)
         for step in self.steps:
             self._index(analysis, step)
         return analysis

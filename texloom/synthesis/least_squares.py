@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float32, Int32
@@ -17,7 +17,7 @@ from texloom.exemplar.patches import even_samples
 from texloom.kernels.averaging import average_patches
 from texloom.kernels.launch import launch
 from texloom.progress import Report
-from texloom.search.analysis import Analysis, analyse
+from texloom.search.analysis import Analysis, analyse, fingerprint
 from texloom.search.matching import Search
 from texloom.search.principal import PcaNearest
 from texloom.synthesis.canvas import Canvas
@@ -74,6 +74,8 @@ class LeastSquares:
     search: Search = PcaNearest()
     samples: int = 8
     dimensions: int = 4  # of appearance vectors, beside the feature distance
+    analysis: Analysis | None = field(default=None, repr=False, compare=False)
+    """What was learnt from the exemplar before; None: learn it."""
 
     def __post_init__(self) -> None:
         if not self.schedule:
@@ -103,7 +105,7 @@ class LeastSquares:
         """Everything learnt from the exemplar, indices of all stages included; it can be saved and used again."""
         check_room(exemplar, self.schedule)
         levels = max(stage.step for stage in self.schedule).bit_length()
-        analysis = analyse(exemplar, levels=levels, dimensions=self.dimensions)
+        analysis = known_or_new(self.analysis, exemplar, levels=levels, dimensions=self.dimensions)
         for stage in self.schedule:
             self._index(analysis, stage)
         return analysis
@@ -154,6 +156,24 @@ class LeastSquares:
 
     def _index(self, analysis: Analysis, stage: Stage):
         return analysis.index(self.search, stage.step.bit_length() - 1, stage.width, self._samples(stage))
+
+
+def known_or_new(known: Analysis | None, exemplar: Exemplar, *, levels: int, dimensions: int) -> Analysis:
+    """The analysis known before, or a new one.
+
+    Raises: ExemplarError, if it is of other pixels; ParameterError, if it was made for fewer levels or other dimensions.
+    """
+    if known is None:
+        return analyse(exemplar, levels=levels, dimensions=dimensions)
+    if known.fingerprint != fingerprint(exemplar):
+        raise ExemplarError("the analysis is of other pixels than this exemplar's: analyse it again")
+    held = known.appearance[0].shape[2] - 1
+    if len(known.levels) < levels or held != dimensions:
+        raise ParameterError(
+            f"the analysis has {len(known.levels)} levels of {held} dimensions, but this method needs {levels} of "
+            f"{dimensions}: analyse the exemplar with this method"
+        )
+    return known
 
 
 def check_room(exemplar: Exemplar, schedule: Sequence[Stage]) -> None:
