@@ -104,6 +104,33 @@ def test_every_site_is_covered(mesh: Mesh, order: int) -> None:
     assert covered.mean() > 0.995
 
 
+def test_sites_far_denser_than_samples_are_all_placed() -> None:
+    n, step = 96, 8  # 64 sites a texel: more than there is room for at first
+    mesh = flat_square(n, float(n))
+    surface = Surface.build(mesh, from_constant(mesh, 1, np.array([1.0, 0, 0])), texel=float(step))
+    assert surface.count == (n + 1) ** 2
+    centre = n // 2 * (n + 1) + n // 2
+    patches = surface.patches(np.array([centre], np.int32), 6)
+    offset = (surface.refined.mesh.vertices - surface.refined.mesh.vertices[centre])[:, 1::-1] / [-step, step]
+    distance = np.abs(offset + 0.5).max(axis=1)  # from the middle of the patch
+    placed = np.diff(patches.cover_start) == 1
+    np.testing.assert_array_equal(placed[distance < 2.99], True)
+    np.testing.assert_array_equal(placed[distance > 3.01], False)
+    np.testing.assert_allclose(patches.cover_position, offset[placed] + 3, atol=1e-4)
+
+
+def test_patches_do_not_depend_on_those_laid_with_them() -> None:
+    surface = around(torus(), order=4)
+    centres = surface.centres(4, seed=3)
+    assert len(centres) > 64  # more than one batch
+    together, alone = surface.patches(centres, 10), surface.patches(centres[70:71], 10)
+    np.testing.assert_array_equal(together.sites[70], alone.sites[0])
+    mine = together.cover_patch == 70
+    np.testing.assert_array_equal(together.cover_position[mine], alone.cover_position)
+    assert together.cover_turn is not None and alone.cover_turn is not None
+    np.testing.assert_array_equal(together.cover_turn[mine], alone.cover_turn)
+
+
 def test_turns_are_quarter_turns_and_match_the_frames() -> None:
     mesh = cube()
     surface = Surface.build(mesh, smoothest(mesh, 4), texel=0.02)

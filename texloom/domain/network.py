@@ -11,7 +11,8 @@ from texloom.domain.patches import Patches
 from texloom.domain.reach import Covering
 from texloom.field.trace import Flow, Samples, starts
 from texloom.kernels.launch import launch, thread_count
-from texloom.kernels.trace import meet_half_way, trace_squares
+from texloom.kernels.meet import meet_half_way
+from texloom.kernels.trace import trace_squares
 
 APART_AT_LEAST, APART_PER_TEXEL = 1.5, 0.2
 """Texels the two paths to a sample may end apart: always, and more for each texel of their shorter leg.

@@ -17,7 +17,7 @@ Cover = tuple[
 ]
 """Start, patch, position and turn, as in ``Patches``."""
 
-_LEAST_ROOM = 4  # sites, and faces, for each sample of a patch: enough at two sites a texel
+_LEAST_ROOM = 4  # sites for each sample of a patch, and twice as many faces; doubled until it is enough
 
 
 @dataclass(eq=False)
@@ -51,13 +51,9 @@ class Covering:
         inputs = [flow.record, flow.twin, flow.faces, frames, flow.order, self.width]
         count = np.empty(patches, np.int32)
         while True:
+            traced = [samples.face, samples.place, samples.heading]
             outputs = [*self._tables.scratch, count, *self._tables.found]
-            launch(
-                cover_squares,
-                patches,
-                inputs=[*inputs, samples.face, samples.place, samples.heading],
-                outputs=outputs,
-            )
+            launch(cover_squares, patches, inputs=[*inputs, *traced], outputs=outputs)
             if (count >= 0).all():
                 break
             self._tables = _Tables(self._tables.patches, 2 * self._tables.room)
@@ -119,7 +115,7 @@ class _Entries:
 
 
 class _Tables:
-    """Room for the kernel to work in: for each patch of a batch so many faces and sites, and hash tables of them."""
+    """Room for the kernel to work in: for each patch of a batch so many sites, twice the faces, hash tables of both."""
 
     def __init__(self, patches: int, room: int) -> None:
         faces, sites = (patches, 2 * room), (patches, room)

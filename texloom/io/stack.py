@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from texloom.errors import ExemplarError, FileError
+from texloom.exemplar.appearance import fill_masked
 from texloom.exemplar.exemplar import Exemplar, Map, combine_masks, kind_of
 from texloom.io.image import read_layers
 from texloom.io.names import ORDER, PACKED, Role, role_of
@@ -125,11 +126,18 @@ def _as_normal(m: Map, file: Path, role: Role, directx_normals: bool) -> Map:
 def _assemble(
     maps: dict[str, Map], alpha: Map | None, mask: str | Path | Bool[np.ndarray, "row column"] | None
 ) -> Exemplar:
-    """The exemplar, its mask gathered from opacity and from the mask asked for."""
+    """The exemplar, its mask gathered from opacity and from the mask asked for.
+
+    Texels that are not used take the values of the nearest used ones: outputs read between texels, and nothing of what
+    was masked may show there.
+    """
     if alpha is not None:
         maps.setdefault("alpha", alpha)
     usable = read_mask(mask) if isinstance(mask, (str, Path)) else mask
     exemplar = Exemplar(maps, usable)
-    if "alpha" not in maps:
+    if "alpha" in maps:
+        exemplar = Exemplar(maps, combine_masks(usable, maps["alpha"].image[..., 0] > 0.0))
+    if exemplar.mask is None:
         return exemplar
-    return Exemplar(maps, combine_masks(usable, maps["alpha"].image[..., 0] > 0.0))
+    shown = {name: replace(m, image=fill_masked(m.image, exemplar.mask)) for name, m in maps.items()}
+    return Exemplar(shown, exemplar.mask)

@@ -1,4 +1,4 @@
-"""Triangles in their own 2-D frames (corner 0 at the origin, corner 1 on the first axis), and vectors laid into them."""
+"""Triangles in their own 2-D frames (corner 0 at the origin, corner 1 on the first axis), and vectors in them."""
 
 import warp as wp
 

@@ -4,12 +4,9 @@
 
 import warp as wp
 
-from texloom.kernels.trace import conjugate, corner, texel_at, times, turn_across
+from texloom.kernels.trace import CPU_FLAGS, conjugate, corner, texel_at, times, turn_across
 
-# Products and sums may fuse, divisions by one number share its inverse: a quarter of the time
-wp.set_module_options(
-    {"cpu_compiler_flags": f"{wp.config.cpu_compiler_flags or '-march=native'} -funsafe-math-optimizations"}
-)
+wp.set_module_options({"cpu_compiler_flags": CPU_FLAGS})
 
 FAR = wp.constant(1.0)  # texels from a sample to the farthest site it can place
 BORDER = wp.constant(0.5)  # half a cell, at the border of the patch

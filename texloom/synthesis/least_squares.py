@@ -127,12 +127,12 @@ class LeastSquares:
             sampled = np.ascontiguousarray(samples @ np.array([stage.extent, 1]) * stage.step, dtype=np.int32)
             if canvas is None:
                 canvas = Canvas.empty(domain.count, appearance.shape[2])
-                canvas.label[:] = 0
                 choice = draws.uniform(seed, _START, index=np.arange(patches.count)) * len(vectors.anchors)
                 found = choice.astype(np.int32)
                 weight = np.ones(patches.count, np.float32)
             else:
                 found, weight, _ = _maximize(canvas, patches, sampled, index, analysis)
+            canvas.label[:] = np.where(np.diff(patches.cover_start) > 0, 0, -1)  # what no patch covers stays unknown
             for iteration in range(self.iterations):
                 anchors = np.ascontiguousarray(vectors.anchors[found])
                 _expect(canvas, patches, anchors, weight, appearance, stage.step)

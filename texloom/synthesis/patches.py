@@ -64,22 +64,33 @@ class PatchSampling:
         self, exemplar: Exemplar, image: Image, domain: Domain, *, seed: int, report: Report
     ) -> tuple[Canvas, int, dict[str, float]]:
         """The canvas covered with blocks, how many, and the seconds that preparing the patches took."""
-        width = self.width_for(exemplar)
+        search = self.search_for(exemplar, image)
+        width = search.width
         depth = max(2, round(self.overlap * width))
         start = time.perf_counter()
         patches = domain.patches(domain.centres(width - depth, seed), width)
         shared = overlaps(patches)
         groups = batches(self.ordered(patches, shared, seed), shared)
         seconds = {"patches": time.perf_counter() - start}
-        step = 2 * _STEP if min(exemplar.shape) >= _LARGE and width % (2 * _STEP) == 0 else _STEP
-        search = BlockSearch(image, width, exemplar.mask, step=step)
-        if not len(search.anchors):
-            raise ExemplarError(f"no {width}x{width} block lies inside the mask: lower patch, or widen the mask")
         canvas = Canvas.empty(domain.count, image.shape[2])
         growth = BlockGrowth(patches, search, ring(width, depth), domain.area, self.balance, seed)
         growth.run(canvas, groups, report)
         canvas.close(domain, image)
         return canvas, patches.count, seconds
+
+    def search_for(self, exemplar: Exemplar, image: Image) -> BlockSearch:
+        """The search among blocks; narrower ones than the sample's size suggests where its mask holds no such block.
+
+        Raises: ExemplarError, if the mask holds no block of the width asked for, or none at all.
+        """
+        for width in range(self.width_for(exemplar), 2 * _STEP - 1, -_STEP):
+            step = 2 * _STEP if min(exemplar.shape) >= _LARGE and width % (2 * _STEP) == 0 else _STEP
+            search = BlockSearch(image, width, exemplar.mask, step=step)
+            if len(search.anchors):
+                return search
+            if self.patch is not None:
+                raise ExemplarError(f"no {width}x{width} block lies inside the mask: lower patch, or widen the mask")
+        raise ExemplarError(f"no {2 * _STEP}x{2 * _STEP} block lies inside the mask: widen the mask")
 
     def width_for(self, exemplar: Exemplar) -> int:
         """Texels a side: as asked, or by the sample's size; never more than half of it, in whole steps."""
