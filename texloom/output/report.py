@@ -31,10 +31,9 @@ body { margin: 0 auto; max-width: 1080px; padding: 40px 28px 80px; background: v
   font: 15px/1.5 system-ui, sans-serif; }
 h1 { font-size: 28px; font-weight: 600; margin: 0; } h1 + p { margin: 4px 0 0; color: var(--soft); }
 h2 { font-size: 17px; font-weight: 600; margin: 44px 0 14px; padding-top: 14px; border-top: 1px solid var(--rule); }
-.figures { display: grid; gap: 20px; grid-template-columns: repeat(auto-fill, minmax(min(190px, 100%), 1fr)); }
-.figures.wide { display: block; }
-figure { margin: 0; } figure img { display: block; width: 100%; height: auto; border-radius: 3px; }
-.wide img { width: auto; max-width: 100%; }
+.figures { display: flex; flex-wrap: wrap; gap: 18px; }
+figure { margin: 0; } .two figure { width: calc(50% - 9px); } .many figure { width: calc(20% - 14.4px); min-width: 130px; }
+figure img { display: block; width: 100%; height: auto; border-radius: 3px; } .one img { width: auto; max-width: 100%; }
 figcaption { margin-top: 6px; color: var(--soft); font-size: 13px; }
 table { border-collapse: collapse; width: 100%; }
 th, td { padding: 6px 16px 6px 0; border-bottom: 1px solid var(--rule); text-align: left; vertical-align: top; }
@@ -114,13 +113,14 @@ def _section(heading: str, content: str) -> str:
 
 
 def _figures(figures: Sequence[Figure]) -> str:
-    """A large picture alone, several in a grid."""
+    """One picture in its own size, two side by side, more in a grid."""
     shown = [
         f'<figure><img alt="{escape(figure.caption)}" src="{_inline(figure.picture)}">'
         f"<figcaption>{escape(figure.caption)}</figcaption></figure>"
         for figure in figures
     ]
-    return f'<div class="figures{" wide" if len(shown) == 1 else ""}">{"".join(shown)}</div>'
+    layout = {1: "one", 2: "two"}.get(len(shown), "many")
+    return f'<div class="figures {layout}">{"".join(shown)}</div>'
 
 
 def _inline(picture: UInt8[np.ndarray, "row column channel"]) -> str:
