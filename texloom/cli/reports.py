@@ -51,7 +51,7 @@ def of_image(run: Run, grid: Grid, maps: Mapping[str, Map]) -> Account:
         ],
     }
     try:
-        scores, remark = vars(score(as_seen(theirs), as_seen(ours))), f"Of {name}, against the sample."
+        scores, remark = vars(score(as_seen(theirs), as_seen(ours))), f"Of {name}, against the sample; 0 is best, but for copy."
     except ParameterError as error:
         scores, remark = {}, f"No scores: {error}."
     return _account(run, "Image", figures, scores, remark)
@@ -74,7 +74,7 @@ def of_surface(run: Run, grown: Grown, skin: Skin) -> Account:
     try:
         values = gather_sites(run.result.sources, map)
         scores = vars(score_sites(map, scored_patches(grown.surface), values))
-        remark = f"Of {name}, on pictures laid along the field, against the sample."
+        remark = f"Of {name}, on pictures laid along the field, against the sample; 0 is best."
     except ParameterError as error:
         scores, remark = {}, f"No scores: {error}."
     return _account(run, "Surface", figures, scores, remark)

@@ -17,6 +17,11 @@ class Mesh:
     vertices: Float64[np.ndarray, "vertex 3"]
     faces: Int32[np.ndarray, "face 3"]
 
+    def __post_init__(self) -> None:
+        # Kernels read the arrays as they lie in memory.
+        object.__setattr__(self, "vertices", np.ascontiguousarray(self.vertices, np.float64))
+        object.__setattr__(self, "faces", np.ascontiguousarray(self.faces, np.int32))
+
     @cached_property
     def twins(self) -> Int32[np.ndarray, "halfedge"]:
         """The halfedge on the other side of each halfedge, -1 at a boundary.

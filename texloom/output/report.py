@@ -32,13 +32,14 @@ body { margin: 0 auto; max-width: 1080px; padding: 40px 28px 80px; background: v
 h1 { font-size: 28px; font-weight: 600; margin: 0; } h1 + p { margin: 4px 0 0; color: var(--soft); }
 h2 { font-size: 17px; font-weight: 600; margin: 44px 0 14px; padding-top: 14px; border-top: 1px solid var(--rule); }
 .figures { display: flex; flex-wrap: wrap; gap: 18px; }
-figure { margin: 0; } .two figure { width: calc(50% - 9px); } .many figure { width: calc(20% - 14.4px); min-width: 130px; }
+figure { margin: 0; } .two figure { width: calc(50% - 9px); } .many figure { width: calc(16.66% - 15px); min-width: 110px; }
 figure img { display: block; width: 100%; height: auto; border-radius: 3px; } .one img { width: auto; max-width: 100%; }
 figcaption { margin-top: 6px; color: var(--soft); font-size: 13px; }
 table { border-collapse: collapse; width: 100%; }
 th, td { padding: 6px 16px 6px 0; border-bottom: 1px solid var(--rule); text-align: left; vertical-align: top; }
-th { font-weight: 500; white-space: nowrap; width: 1%; } td.number { width: 1%; font-variant-numeric: tabular-nums; }
-td.soft, p.soft { color: var(--soft); } td { overflow-wrap: anywhere; }
+th { font-weight: 500; white-space: nowrap; width: 1%; } td { overflow-wrap: anywhere; }
+td.number { width: 1%; white-space: nowrap; overflow-wrap: normal; font-variant-numeric: tabular-nums; }
+td.soft, p.soft { color: var(--soft); }
 pre { background: color-mix(in srgb, var(--rule) 45%, transparent); padding: 12px 14px; border-radius: 4px;
   white-space: pre-wrap; overflow-wrap: anywhere; font: 13px/1.5 ui-monospace, monospace; margin: 0 0 18px; }
 svg { display: block; width: 100%; max-width: 760px; } svg text { font-size: 12px; fill: var(--ink); }
