@@ -17,8 +17,8 @@ ABOVE = Camera(azimuth=20, elevation=30, margin=0.03)
 
 def picture(detail: float = 1.0) -> Picture:
     """Symmetries 1, 2 and 4; ``detail`` scales how many texels cover the mesh."""
-    mesh, sample = rabbit(), draw("weave", size=128)
-    texel = texloom.texel_for_repeats(mesh, 2.8 * detail, sample.shape[1])
+    mesh, sample = rabbit(), draw("weave", size=192)
+    texel = texloom.texel_for_repeats(mesh, 2.2 * detail, sample.shape[1])
     pictures = []
     for order in (1, 2, 4):
         surface = texloom.Surface.build(mesh, texloom.smoothest(mesh, order), texel=texel)

@@ -9,6 +9,8 @@ from tests.synthesis.samples import ball
 from texloom.domain.grid import Grid
 from texloom.synthesis.gaps import fill_gaps
 
+WIDE = (1 << 20, 1 << 20)  # an exemplar whose border is out of reach
+
 
 @settings(max_examples=15, deadline=None)
 @given(seed=st.integers(0, 999), share=st.floats(0.02, 1), wrap=st.booleans())
@@ -20,7 +22,7 @@ def test_a_copy_with_gaps_is_made_whole_again(seed: int, share: float, wrap: boo
     place = np.stack(np.divmod(np.arange(grid.count), 9), 1) + np.float32([4, 7])
     position = np.where(known[:, None], place, 0).astype(np.float32)
     before = known.copy()
-    fill_gaps(grid, known, position, np.zeros(grid.count, np.float32))
+    fill_gaps(grid, known, position, np.zeros(grid.count, np.float32), WIDE)
     np.testing.assert_array_equal(known, before)
     apart = (position - place) / ([11, 9] if wrap else [1, 1])  # across a torus's border the copy goes on
     np.testing.assert_array_equal(apart, np.rint(apart) if wrap else np.zeros_like(apart))
@@ -28,7 +30,7 @@ def test_a_copy_with_gaps_is_made_whole_again(seed: int, share: float, wrap: boo
 
 def test_where_nothing_is_known_nothing_changes() -> None:
     position, turn = np.full((12, 2), 5, np.float32), np.zeros(12, np.float32)
-    fill_gaps(Grid(3, 4), np.zeros(12, bool), position, turn)
+    fill_gaps(Grid(3, 4), np.zeros(12, bool), position, turn, WIDE)
     np.testing.assert_array_equal(position, 5)
 
 
@@ -38,9 +40,9 @@ def test_on_a_surface_gaps_follow_the_frames() -> None:
     rng = np.random.default_rng(0)
     known = np.ones(surface.count, bool)
     known[rng.permutation(surface.count)[:9]] = False
-    position = (20 * rng.random((surface.count, 2))).astype(np.float32)
+    position = (20 + 20 * rng.random((surface.count, 2))).astype(np.float32)
     turn = (rng.integers(-1, 3, surface.count) * np.pi / 2).astype(np.float32)
-    fill_gaps(surface, known, position, turn)
+    fill_gaps(surface, known, position, turn, WIDE)
     gaps = np.flatnonzero(~known).astype(np.int32)
     around = surface.neighbourhoods(gaps, 1)
     for i, site in enumerate(gaps):
@@ -62,6 +64,6 @@ def test_ties_do_not_depend_on_chance(wrap: bool) -> None:
     results = []
     for _ in range(2):
         position = np.arange(72, dtype=np.float32).reshape(36, 2).copy()
-        fill_gaps(grid, known, position, np.zeros(36, np.float32))
+        fill_gaps(grid, known, position, np.zeros(36, np.float32), WIDE)
         results.append(position)
     np.testing.assert_array_equal(*results)

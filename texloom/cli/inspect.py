@@ -1,6 +1,7 @@
 """``texloom inspect``: what a file holds, and what is wrong with it."""
 
-from collections.abc import Callable
+import json
+import zipfile
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,7 +13,10 @@ from texloom.errors import FileError
 
 
 def inspect(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="An image, a folder of maps, a mesh, or saved sources.")],
+    file: Annotated[
+        Path,
+        typer.Argument(metavar="FILE", help="An image, a folder of maps, a mesh, saved sources or a saved analysis."),
+    ],
     material: Annotated[str | None, typer.Option(metavar="NAME", help="Look at this material of a mesh only.")] = None,
     as_json: options.Json = False,
 ) -> None:
@@ -20,14 +24,14 @@ def inspect(
     if not file.exists():
         raise FileError(f"{file}: no such file or folder")
     with Session(as_json=as_json) as session, session.stage("read"):
-        suffix = file.suffix.lower()
-        describe: Callable[[Path], dict[str, Any]] = _describe_stack
-        if suffix in options.MESH_SUFFIXES:
+        if file.suffix.lower() in options.MESH_SUFFIXES:
             session.finish(_describe_mesh(file, material))
-        elif suffix == ".npz":
-            session.finish(_describe_sources(file))
+        elif file.is_file() and zipfile.is_zipfile(file):
+            session.finish(_describe_archive(file))
+        elif file.suffix.lower() == ".npz":
+            raise FileError(f"{file.name} holds neither sources nor an analysis, or is damaged: save it again")
         else:
-            session.finish(describe(file))
+            session.finish(_describe_stack(file))
 
 
 def _describe_stack(path: Path) -> dict[str, Any]:
@@ -48,13 +52,47 @@ def _describe_stack(path: Path) -> dict[str, Any]:
     return {"kind": "stack" if path.is_dir() else "image", "size": (columns, rows), "maps": maps, "masked": masked}
 
 
+def _describe_archive(path: Path) -> dict[str, Any]:
+    """Saved sources, or a saved analysis, by the mark in its header."""
+    import numpy as np
+
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            header = json.loads(str(archive["header"]))
+            if "texloom_analysis" in header:
+                levels = [archive[name].shape for name in sorted(archive.files) if name.startswith("appearance")]
+                return _describe_analysis(header, levels)
+    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile):
+        raise FileError(f"{path.name} holds neither sources nor an analysis, or is damaged: save it again") from None
+    return _describe_sources(path)
+
+
+def _describe_analysis(header: dict[str, Any], levels: list[tuple[int, ...]]) -> dict[str, Any]:
+    """What was learnt from an exemplar; ``levels`` are the shapes of its appearance, finest first."""
+    return {
+        "kind": "analysis",
+        "version": header["texloom_analysis"],
+        "fingerprint": header["fingerprint"],
+        "sample": (levels[0][1], levels[0][0]),
+        "levels": len(levels),
+        "dimensions": levels[0][2] - 1,
+        "learnt for": header["requests"],
+    }
+
+
 def _describe_sources(path: Path) -> dict[str, Any]:
     from texloom.output.sources_file import load_sources
 
     saved = load_sources(path)
-    sources = saved.sources
+    sources, domain = saved.sources, saved.domain
+    rows, columns = (int(domain[name]) if name in domain else 0 for name in ("rows", "columns"))
     return {
         "kind": "sources",
+        "of": "an image" if rows else "a surface",
+        "size": (columns, rows) if rows else (),
+        "texel": float(domain["surface.texel"]) if "surface.texel" in domain else None,
+        "atlas": tuple(reversed(domain["atlas.nearest"].shape)) if "atlas.nearest" in domain else (),
+        "sample": tuple(int(side) for side in reversed(domain.get("sample", ()))),
         "sites": sources.count,
         "sources a site": sources.weight.shape[1],
         "turned": sources.turn is not None,

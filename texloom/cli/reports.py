@@ -51,7 +51,10 @@ def of_image(run: Run, grid: Grid, maps: Mapping[str, Map]) -> Account:
         ],
     }
     try:
-        scores, remark = vars(score(as_seen(theirs), as_seen(ours))), f"Of {name}, against the sample; 0 is best, but for copy."
+        scores, remark = (
+            vars(score(as_seen(theirs), as_seen(ours))),
+            f"Of {name}, against the sample; 0 is best, but for copy.",
+        )
     except ParameterError as error:
         scores, remark = {}, f"No scores: {error}."
     return _account(run, "Image", figures, scores, remark)

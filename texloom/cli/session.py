@@ -113,7 +113,11 @@ def _words(name: str, value: Any) -> str:
         between = "\n" if any(isinstance(part, Mapping) for part in value.values()) else ", "
         return between.join(f"{key} {_words(key, part)}" for key, part in value.items())
     if isinstance(value, (list, tuple)):
-        between = "\n" if name in ("files", "mends") else {"size": "×", "range": " to "}.get(name, ", ")
+        between = (
+            "\n"
+            if name in ("files", "mends", "learnt for")
+            else {"size": "×", "sample": "×", "atlas": "×", "range": " to "}.get(name, ", ")
+        )
         return between.join(_words("", part) for part in value)
     return str(value)
 

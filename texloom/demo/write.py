@@ -11,12 +11,16 @@ from texloom.output.atomic import atomic
 from texloom.output.image import write_images
 
 
-def write_sample(folder: Path, name: str, *, size: int = 256, seed: int = 0) -> list[Path]:
+SIZE = 256
+"""Texels a side of the samples, unless others are asked for."""
+
+
+def write_sample(folder: Path, name: str, *, size: int = SIZE, seed: int = 0) -> list[Path]:
     """One sample as a folder of maps."""
     return write_images(folder, draw(name, size=size, seed=seed).maps)
 
 
-def write_samples(folder: Path, *, size: int = 256, seed: int = 0) -> dict[str, Path]:
+def write_samples(folder: Path, *, size: int = SIZE, seed: int = 0) -> dict[str, Path]:
     """Every sample as a folder of maps, by name."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in SAMPLES:

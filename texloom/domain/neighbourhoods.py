@@ -10,9 +10,9 @@ from jaxtyping import Float32, Int32
 class Neighbourhoods:
     """``k`` sites around each of ``n``; the first is the site itself, -1 ends the list.
 
-    ``offset`` is [row, column] texels from the middle site in its frame, and ``turn`` the angle by which the middle
-    site's frame is turned against the neighbour's (None where all are 0). Where all neighbourhoods are alike
-    ``offset`` holds one row.
+    ``offset`` is [row, column] texels from the middle site in its frame; where all neighbourhoods are alike it holds
+    one row. ``turn`` is the angle by which the middle site's frame is turned against the neighbour's, as the field
+    counts: a multiple of 2π/n (None where all are 0).
     """
 
     sites: Int32[np.ndarray, "n k"]

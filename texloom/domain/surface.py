@@ -18,7 +18,7 @@ from texloom.kernels.neighbourhoods import spread
 from texloom.mesh.mesh import Mesh
 from texloom.mesh.refine import Refined, refine
 
-_LONGEST_EDGE = 1.45  # texels; halving edges until none is longer leaves 0.5 to 2 sites a texel
+_LONGEST_EDGE = 1.9  # texels; halving edges until none is longer leaves about one site a texel
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +133,10 @@ class Surface:
             ],
             outputs=[found, offset, turn],
         )
-        return Neighbourhoods(found, offset, turn if self.field.order > 1 else None)
+        if self.field.order == 1:
+            return Neighbourhoods(found, offset)
+        branch = 2 * np.pi / self.field.order
+        return Neighbourhoods(found, offset, np.rint(turn / branch).astype(np.float32) * np.float32(branch))
 
 
 def texel_for_repeats(mesh: Mesh, repeats: float, sample_width: int) -> float:

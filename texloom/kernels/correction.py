@@ -3,7 +3,6 @@
 import warp as wp
 
 NEAR = wp.constant(2.5)  # squared texels: how near the neighbours are whose sources are tried
-SKEW = wp.constant(0.87)  # cosine: sources turned more than 30° against the middle site cannot be continued there
 
 
 @wp.func
@@ -11,6 +10,7 @@ def mismatch(
     exemplar: wp.array3d(dtype=wp.vec4),
     row: float,
     column: float,
+    angle: float,
     sites: wp.array2d(dtype=int),
     offset: wp.array3d(dtype=float),
     shape: int,
@@ -18,18 +18,24 @@ def mismatch(
     colour: wp.array2d(dtype=wp.vec4),
     limit: float,
 ) -> float:
-    """Sum over the neighbours s of site i of |exemplar((row, column) + offset_s) - colour_s|^2; stops past ``limit``.
+    """Sum over the neighbours s of site i of |exemplar((row, column) + R offset_s) - colour_s|^2; stops past ``limit``.
+
+    R reads an offset in axes turned by ``angle``.
 
     Offsets may reach half a texel farther than whole ones do: what lies outside the exemplar reads its border.
     """
     total = float(0.0)
+    cosine = wp.cos(angle)
+    sine = wp.sin(angle)
     bottom = float(exemplar.shape[0] - 1)
     right = float(exemplar.shape[1] - 1)
     for k in range(sites.shape[1]):
         site = sites[i, k]
         if site >= 0:
-            y = wp.clamp(row + offset[shape, k, 0], 0.0, bottom)
-            x = wp.clamp(column + offset[shape, k, 1], 0.0, right)
+            dr = offset[shape, k, 0]
+            dc = offset[shape, k, 1]
+            y = wp.clamp(row + cosine * dr + sine * dc, 0.0, bottom)
+            x = wp.clamp(column + cosine * dc - sine * dr, 0.0, right)
             r = int(wp.floor(y))
             c = int(wp.floor(x))
             fr = y - float(r)
@@ -50,13 +56,14 @@ def mismatch(
 
 
 @wp.func
-def is_new(tried: wp.array3d(dtype=float), i: int, count: int, row: float, column: float) -> bool:
-    """Whether (row, column) is none of the ``count`` candidates tried, to a third of a texel, and fits beside them."""
+def is_new(tried: wp.array3d(dtype=float), i: int, count: int, row: float, column: float, angle: float) -> bool:
+    """Whether this is none of the ``count`` candidates tried, to a third of a texel and 30°, and fits beside them."""
     if count >= tried.shape[1]:
         return False
     for k in range(count):
         if wp.abs(tried[i, k, 0] - row) + wp.abs(tried[i, k, 1] - column) < 0.3:
-            return False
+            if wp.cos(tried[i, k, 2] - angle) > 0.87:
+                return False
     return True
 
 
@@ -86,14 +93,14 @@ def correct_sites(
     exemplar: wp.array3d(dtype=wp.vec4),
     usable: wp.array2d(dtype=wp.uint8),
     similar: wp.array4d(dtype=int),  # (row, column, k, 2): texels most like each texel
-    tried: wp.array3d(dtype=float),  # (chosen, candidate, 2) scratch; no more candidates than fit are compared
+    tried: wp.array3d(dtype=float),  # (chosen, candidate, 3) scratch; no more candidates than fit are compared
     found: wp.array2d(dtype=float),
     cost: wp.array(dtype=float),
 ):
-    """found[i] = argmin over candidates q of mean_k |exemplar(q + offset_k) - colour_k|^2.
+    """found[i] = argmin over candidates (q, turn) of mean_k |exemplar(q + R(turn) offset_k) - colour_k|^2.
 
-    Candidates are the sources of the middle site and of those next to it, each moved by their offset (coherence), and
-    the texels similar to the middle site's (k-coherence). Ties keep the first. A neighbourhood none of whose sites
+    Candidates are the sources of the middle site and of those next to it, continued to the middle (coherence), and the
+    texels similar to the middle site's (k-coherence). Ties keep the first. A neighbourhood none of whose sites
     changed since its last visit is passed over: it would find the same. ``cost`` is by neighbourhood.
     """
     i = start + wp.tid()
@@ -101,6 +108,7 @@ def correct_sites(
     middle = sites[own, 0]
     found[i, 0] = position[middle, 0]
     found[i, 1] = position[middle, 1]
+    found[i, 2] = turn[middle]
     latest = int(-1)
     number = float(0.0)
     for k in range(sites.shape[1]):
@@ -116,17 +124,18 @@ def correct_sites(
         site = sites[own, k]
         dr = offset[shape, k, 0]
         dc = offset[shape, k, 1]
-        straight = int(0)
+        guesses = int(0)
+        angle = float(0.0)
         if site >= 0 and dr * dr + dc * dc < NEAR:
             if label[site] >= 0:
-                straight = 1
+                guesses = 1
+                angle = turn[site]
                 if turned.shape[1] > 1:
-                    # The source's axes against the middle site's frame: its turn there, less the frames' own.
-                    if wp.cos(turn[site] - turned[own, k]) < SKEW:
-                        straight = 0
-        guesses = straight
-        if k == 0:
-            guesses = straight * (1 + similar.shape[2])
+                    angle -= turned[own, k]  # the source's axes, against the middle site's frame
+                if k == 0:
+                    guesses = 1 + similar.shape[2]
+        cosine = wp.cos(angle)
+        sine = wp.sin(angle)
         for guess in range(guesses):
             row = position[site, 0]
             column = position[site, 1]
@@ -136,18 +145,20 @@ def correct_sites(
                 c = wp.clamp(int(wp.round(column)), 0, similar.shape[1] - 1)
                 row = row + float(similar[r, c, guess - 1, 0] - r)
                 column = column + float(similar[r, c, guess - 1, 1] - c)
-            row = row - dr
-            column = column - dc
+            row = row - (cosine * dr + sine * dc)
+            column = column - (cosine * dc - sine * dr)
             # What is shown now may always stay, or coherence would break where it comes from the exemplar's border.
             fits = k + guess == 0 or is_usable(usable, row, column)
-            if fits and is_new(tried, i, count, row, column):
+            if fits and is_new(tried, i, count, row, column, angle):
                 tried[i, count, 0] = row
                 tried[i, count, 1] = column
+                tried[i, count, 2] = angle
                 count += 1
-                total = mismatch(exemplar, row, column, sites, offset, shape, own, colour, best)
+                total = mismatch(exemplar, row, column, angle, sites, offset, shape, own, colour, best)
                 if total < best:
                     best = total
                     found[i, 0] = row
                     found[i, 1] = column
+                    found[i, 2] = angle
     if count > 0:
         cost[own] = best / number

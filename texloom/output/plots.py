@@ -1,4 +1,4 @@
-"""Small plots as inline SVG: a line over passes, bars of seconds. Colours come from the page's style."""
+"""Small plots as inline SVG that stand alone: a line over passes, bars of seconds; in the page's own ink."""
 
 from collections.abc import Mapping, Sequence
 from html import escape
@@ -7,6 +7,7 @@ from math import ceil, floor, log10
 _WIDTH = 640  # of every plot, in its own units
 _LEFT, _RIGHT, _TOP, _BOTTOM = 76, 16, 12, 34  # room for labels
 _BAR = 26  # height of a bar with its gap
+_MARK = "#4a7fb5"  # of lines and bars, on light pages and on dark ones
 
 
 def line_plot(values: Sequence[float], *, across: str, height: int = 220) -> str:
@@ -22,18 +23,18 @@ def line_plot(values: Sequence[float], *, across: str, height: int = 220) -> str
     parts = []
     for tick in ticks:
         y = place(0, tick)[1]
-        parts.append(f'<line class="grid" x1="{_LEFT}" x2="{_WIDTH - _RIGHT}" y1="{y:.1f}" y2="{y:.1f}"/>')
-        parts.append(f'<text class="end" x="{_LEFT - 8}" y="{y + 4:.1f}">{tick:.4g}</text>')
+        parts.append(f'<path d="M{_LEFT} {y:.1f}H{_WIDTH - _RIGHT}" stroke="currentColor" stroke-opacity="0.15"/>')
+        parts.append(_text(_LEFT - 8, y + 4, f"{tick:.4g}", anchor="end"))
     dots = [place(number, value) for number, value in enumerate(values)]
-    parts.append(f'<polyline class="line" points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in dots)}"/>')
+    points = " ".join(f"{x:.1f},{y:.1f}" for x, y in dots)
+    parts.append(f'<polyline points="{points}" fill="none" stroke="{_MARK}" stroke-width="2"/>')
     for number, (x, y) in enumerate(dots, 1):
         title = f"<title>{number}: {values[number - 1]:.4g}</title>"
-        parts.append(f'<circle class="dot" cx="{x:.1f}" cy="{y:.1f}" r="{4 if len(dots) < 20 else 2}">{title}</circle>')
+        radius = 4 if len(dots) < 20 else 2
+        parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius}" fill="{_MARK}">{title}</circle>')
     for number in sorted({1, len(values)}):
-        x = dots[number - 1][0]
-        parts.append(f'<text class="middle" x="{x:.1f}" y="{height - _BOTTOM + 18}">{number}</text>')
-    middle = _LEFT + inner / 2
-    parts.append(f'<text class="middle soft" x="{middle:.0f}" y="{height - 4}">{escape(across)}</text>')
+        parts.append(_text(dots[number - 1][0], height - _BOTTOM + 18, str(number), anchor="middle"))
+    parts.append(_text(_LEFT + inner / 2, height - 4, across, anchor="middle", opacity=0.6))
     return _svg(height, parts)
 
 
@@ -45,9 +46,9 @@ def bar_plot(values: Mapping[str, float], *, unit: str) -> str:
     for row, (name, value) in enumerate(values.items()):
         y = row * _BAR + 4
         length = max((_WIDTH - left - right) * value / longest, 1.0)
-        parts.append(f'<text class="end" x="{left - 10}" y="{y + 14}">{escape(name)}</text>')
-        parts.append(f'<rect class="bar" x="{left}" y="{y}" width="{length:.1f}" height="{_BAR - 8}" rx="2"/>')
-        parts.append(f'<text class="soft" x="{left + length + 8:.1f}" y="{y + 14}">{value:.2f} {escape(unit)}</text>')
+        parts.append(_text(left - 10, y + 14, name, anchor="end"))
+        parts.append(f'<rect x="{left}" y="{y}" width="{length:.1f}" height="{_BAR - 8}" rx="2" fill="{_MARK}"/>')
+        parts.append(_text(left + length + 8, y + 14, f"{value:.2f} {unit}", opacity=0.6))
     return _svg(len(values) * _BAR + 4, parts)
 
 
@@ -59,6 +60,11 @@ def nice_ticks(low: float, high: float, *, about: int = 4) -> list[float]:
     power = 10.0 ** floor(log10(raw))
     step = next(power * factor for factor in (1, 2, 5, 10) if power * factor >= raw * (1 - 1e-9))
     return [step * number for number in range(floor(low / step), ceil(high / step) + 1)]
+
+
+def _text(x: float, y: float, text: str, *, anchor: str = "start", opacity: float = 1.0) -> str:
+    place = f'x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}"'
+    return f'<text {place} font-size="12" fill="currentColor" fill-opacity="{opacity}">{escape(text)}</text>'
 
 
 def _svg(height: int, parts: Sequence[str]) -> str:

@@ -23,16 +23,17 @@ _MEANING = {
 }
 
 _STYLE = """
-:root { color-scheme: light dark; --ink: #1c1d21; --soft: #696c76; --rule: #e2e3e8; --page: #fff; --mark: #3a6ea5; }
+:root { color-scheme: light dark; --ink: #1c1d21; --soft: #696c76; --rule: #e2e3e8; --page: #fff; }
 @media (prefers-color-scheme: dark) {
-  :root { --ink: #e8e9ed; --soft: #9a9da8; --rule: #33353c; --page: #17181b; --mark: #7db0e0; } }
+  :root { --ink: #e8e9ed; --soft: #9a9da8; --rule: #33353c; --page: #17181b; } }
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 1080px; padding: 40px 28px 80px; background: var(--page); color: var(--ink);
   font: 15px/1.5 system-ui, sans-serif; }
 h1 { font-size: 28px; font-weight: 600; margin: 0; } h1 + p { margin: 4px 0 0; color: var(--soft); }
 h2 { font-size: 17px; font-weight: 600; margin: 44px 0 14px; padding-top: 14px; border-top: 1px solid var(--rule); }
 .figures { display: flex; flex-wrap: wrap; gap: 18px; }
-figure { margin: 0; } .two figure { width: calc(50% - 9px); } .many figure { width: calc(16.66% - 15px); min-width: 110px; }
+figure { margin: 0; }
+.two figure { width: calc(50% - 9px); } .many figure { width: calc(16.66% - 15px); min-width: 110px; }
 figure img { display: block; width: 100%; height: auto; border-radius: 3px; } .one img { width: auto; max-width: 100%; }
 figcaption { margin-top: 6px; color: var(--soft); font-size: 13px; }
 table { border-collapse: collapse; width: 100%; }
@@ -42,10 +43,7 @@ td.number { width: 1%; white-space: nowrap; overflow-wrap: normal; font-variant-
 td.soft, p.soft { color: var(--soft); }
 pre { background: color-mix(in srgb, var(--rule) 45%, transparent); padding: 12px 14px; border-radius: 4px;
   white-space: pre-wrap; overflow-wrap: anywhere; font: 13px/1.5 ui-monospace, monospace; margin: 0 0 18px; }
-svg { display: block; width: 100%; max-width: 760px; } svg text { font-size: 12px; fill: var(--ink); }
-svg .end { text-anchor: end; } svg .middle { text-anchor: middle; } svg .soft { fill: var(--soft); }
-svg .grid { stroke: var(--rule); } svg .line { fill: none; stroke: var(--mark); stroke-width: 2; }
-svg .dot, svg .bar { fill: var(--mark); }
+svg { display: block; width: 100%; max-width: 760px; }
 """
 
 

@@ -121,7 +121,10 @@ class BoundarySampling:
             report("sampling", (number + 1) / len(self.steps))
         rank = np.empty(patches.count, np.int32)
         rank[np.concatenate(laid.groups)] = np.arange(patches.count, dtype=np.int32)
-        return Result(feathered(domain, patches, anchors, rank, self.zone), patches=patches.count)
+        return Result(
+            feathered(domain, patches, anchors, rank, self.zone, analysis.appearance[0].shape[:2]),
+            patches=patches.count,
+        )
 
     def _lay_level(self, analysis: Analysis, laid: Laid, canvas: Canvas, appearance, anchors, step: int) -> None:
         """Match and paste every batch on one level."""

@@ -36,9 +36,8 @@ class Canvas:
     def close(self, domain: Domain, image: Image) -> None:
         """Continue the texture over sites that no patch reached."""
         bare = self.label < 0
-        fill_gaps(domain, ~bare, self.position, self.turn)
+        fill_gaps(domain, ~bare, self.position, self.turn, image.shape[:2])
         texel = np.rint(self.position[bare]).astype(np.int32)
-        texel = np.clip(texel, 0, np.array(image.shape[:2]) - 1)
         self.colour[bare] = image[texel[:, 0], texel[:, 1]]
         self.label[bare] = np.iinfo(np.int32).max  # a patch of its own, so that correction visits its border
 

@@ -21,7 +21,6 @@ from texloom.synthesis.canvas import Canvas
 _SUBPASSES = 4  # a random quarter of the sites at a time, so that most see their neighbours corrected
 _CANDIDATES = 12  # distinct ones compared at most; near a border there are two to eight
 _PART = 0xC0  # purpose of the draws that part the sites
-_SKEW = 0.87  # cosine: a site whose source is turned more than 30° keeps it
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,8 +60,8 @@ class Correction:
         now: int,
     ) -> None:
         """All chosen neighbourhoods at once, from what the canvas shows now."""
-        found = np.empty((len(chosen), 2), np.float32)
-        tried = np.empty((len(chosen), _CANDIDATES, 2), np.float32)
+        found = np.empty((len(chosen), 3), np.float32)
+        tried = np.empty((len(chosen), _CANDIDATES, 3), np.float32)
         launch(
             correct_sites,
             len(chosen),
@@ -76,11 +75,11 @@ class Correction:
         )
         visits.visited[chosen] = now
         site = around.sites[chosen, 0]
-        moved = (canvas.position[site] != found).any(1) & (np.cos(canvas.turn[site]) > _SKEW)
+        moved = (canvas.position[site] != found[:, :2]).any(1) | (canvas.turn[site] != found[:, 2])
         site, found = site[moved], found[moved]
         visits.changed[site] = now
-        canvas.position[site] = found
-        texel = np.rint(found).astype(np.int32)
+        canvas.position[site], canvas.turn[site] = found[:, :2], found[:, 2]
+        texel = np.clip(np.rint(found[:, :2]).astype(np.int32), 0, np.array(self.image.shape[:2]) - 1)
         canvas.colour[site] = self.image[texel[:, 0], texel[:, 1]]
 
 

@@ -11,8 +11,11 @@ def fill_gaps(
     known: Bool[np.ndarray, "site"],
     position: Float32[np.ndarray, "site 2"],
     turn: Float32[np.ndarray, "site"],
+    shape: tuple[int, int],
 ) -> None:
     """Give every unknown site the source of the nearest known one beside it, moved by the offset; outwards, in place.
+
+    Positions stay within an exemplar of ``shape``: at its border they stand still.
 
     Parts of the domain where nothing is known keep what they have.
     """
@@ -30,7 +33,8 @@ def fill_gaps(
         column = nearest[row]
         site, other = missing[row], around.sites[row, column]
         angle = turn[other] - (0.0 if around.turn is None else around.turn[row, column])
-        position[site] = position[other] - turned(offset[row, column], angle)
+        continued = position[other] - turned(offset[row, column], angle)
+        position[site] = np.clip(continued, 0, np.array(shape, np.float32) - 1)
         turn[site] = angle
         known[site] = True
         missing = missing[~known[missing]]

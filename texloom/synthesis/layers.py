@@ -19,6 +19,7 @@ def heaviest(
     patches: Patches,
     anchors: Int32[np.ndarray, "patch 2"],
     weight: Float32[np.ndarray, "patch"],
+    shape: tuple[int, int],
 ) -> SourceMap:
     """Each site shows the mean of its heaviest patches."""
     entry, share = _empty(patches)
@@ -28,11 +29,16 @@ def heaviest(
         inputs=[patches.cover_start, patches.cover_patch, weight],
         outputs=[entry, share],
     )
-    return _sources(domain, patches, anchors, entry, share)
+    return _sources(domain, patches, anchors, entry, share, shape)
 
 
 def feathered(
-    domain: Domain, patches: Patches, anchors: Int32[np.ndarray, "patch 2"], rank: Int32[np.ndarray, "patch"], zone: int
+    domain: Domain,
+    patches: Patches,
+    anchors: Int32[np.ndarray, "patch 2"],
+    rank: Int32[np.ndarray, "patch"],
+    zone: int,
+    shape: tuple[int, int],
 ) -> SourceMap:
     """Each site shows the patches laid over it, the latest on top, blended over ``zone`` samples at their borders."""
     entry, share = _empty(patches)
@@ -45,7 +51,7 @@ def feathered(
         ],
         outputs=[entry, share],
     )
-    return _sources(domain, patches, anchors, entry, share)
+    return _sources(domain, patches, anchors, entry, share, shape)
 
 
 def _empty(patches: Patches) -> tuple[Int32[np.ndarray, "site k"], Float32[np.ndarray, "site k"]]:
@@ -59,6 +65,7 @@ def _sources(
     anchors: Int32[np.ndarray, "patch 2"],
     entry: Int32[np.ndarray, "site k"],
     share: Float32[np.ndarray, "site k"],
+    shape: tuple[int, int],
 ) -> SourceMap:
     """Sources of the given cover entries, heaviest first; sites that no patch covers continue their neighbours'."""
     position = np.empty((*entry.shape, 2), np.float32)
@@ -76,7 +83,7 @@ def _sources(
     bare = np.diff(patches.cover_start) == 0
     if bare.any():
         lead = np.ascontiguousarray(turn[:, 0]) if turned else np.zeros(len(entry), np.float32)
-        fill_gaps(domain, ~bare, position[:, 0], lead)
+        fill_gaps(domain, ~bare, position[:, 0], lead, shape)
         if turned:
             turn[:, 0] = lead
     return SourceMap(position, share, turn if turned else None)

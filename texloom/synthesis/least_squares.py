@@ -147,7 +147,9 @@ class LeastSquares:
                 stopped = "iterations"
             anchors = np.ascontiguousarray(vectors.anchors[found])
         count = sum(laid[stage.extent].count for stage in self.schedule)
-        sources = heaviest(domain, laid[stage.extent], anchors * np.int32(stage.step), weight)
+        sources = heaviest(
+            domain, laid[stage.extent], anchors * np.int32(stage.step), weight, analysis.appearance[0].shape[:2]
+        )
         return Result(sources, tuple(energy), {}, stopped, count)
 
     def _samples(self, stage: Stage) -> Int32[np.ndarray, "sample 2"]:
@@ -161,7 +163,7 @@ class LeastSquares:
 def known_or_new(known: Analysis | None, exemplar: Exemplar, *, levels: int, dimensions: int) -> Analysis:
     """The analysis known before, or a new one.
 
-    Raises: ExemplarError, if it is of other pixels; ParameterError, if it was made for fewer levels or other dimensions.
+    Raises: ExemplarError, if it is of other pixels; ParameterError, if it has fewer levels or other dimensions.
     """
     if known is None:
         return analyse(exemplar, levels=levels, dimensions=dimensions)
