@@ -10,7 +10,6 @@ from texloom.mesh.mesh import Mesh
 from texloom.output.atomic import atomic
 from texloom.output.image import write_images
 
-
 SIZE = 256
 """Texels a side of the samples, unless others are asked for."""
 

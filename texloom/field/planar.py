@@ -38,7 +38,7 @@ def ring(rows: int, columns: int, *, centre_scale: float = 1.0) -> PlanarField:
     return PlanarField(_unit(-column, row), _graded(row, column, centre_scale))
 
 
-def sine(rows: int, columns: int, *, waves: float = 2.0, height: float = 0.1) -> PlanarField:
+def sine(rows: int, columns: int, *, waves: float = 1.5, height: float = 0.05) -> PlanarField:
     """Along sine curves from left to right: ``waves`` periods, each ``height`` × the width up and down."""
     phase = 2 * np.pi * waves * np.arange(columns) / columns
     slope = 2 * np.pi * waves * height * np.cos(phase)

@@ -31,8 +31,8 @@ _CHOICE = 0xB10C  # purpose of the draws that choose a block where nothing is kn
 _TYPICAL = 200  # the typical mismatch is that of the best 1 / 200 of all candidates
 _LEAST = 1e-8  # mismatch taken for typical where everything fits, as on a constant sample
 _FINALISTS = 4  # candidates whose seams are cut
-_FLOOR = 0.8  # of the typical mismatch: fits better than this count alike
-_SEAM_FLOOR = 0.8  # of the finalists' mean seam cost, likewise
+_FLOOR = 0.5  # of the typical mismatch: fits better than this count alike
+_SEAM_FLOOR = 0.5  # of the finalists' mean seam cost, likewise
 
 
 @dataclass(frozen=True, eq=False)
