@@ -62,7 +62,19 @@ def test_the_command_learns_once(
     sample: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kept = tmp_path / "a.npz"
-    grow = ["image", sample, "--size", 16, "--preset", "resampling", "--method", "patches", "--analysis", kept, "--json"]
+    grow = [
+        "image",
+        sample,
+        "--size",
+        16,
+        "--preset",
+        "resampling",
+        "--method",
+        "patches",
+        "--analysis",
+        kept,
+        "--json",
+    ]
     assert command.main([*map(str, grow), "-o", str(tmp_path / "1.png")]) == 0
     assert str(kept) in json.loads(capsys.readouterr().out)["files"]
     saved = kept.read_bytes()

@@ -64,7 +64,10 @@ def test_version(capsys: Captured) -> None:
         (["image", "{sample}", "-o", "out.png", "--search", "pca"], "add --preset resampling"),
         (["image", "{sample}", "{sample}", "-o", "out.png"], "2 samples were given"),
         (["image", "{sample}", "-o", "nowhere/out.png"], "there is no folder nowhere"),
-        (["score", "{sample}", "bunny.glb"], "bunny.glb is a mesh"),
+        (["score", "bunny.glb", "{sample}"], "bunny.glb is a mesh: the first file is the sample"),
+        (["score", "{sample}", "bunny.stl"], "bunny.stl is a mesh without a direction field"),
+        (["image", "{sample}", "-o", "out.png", "--report", "r.pdf"], "a report is a page, name it .html"),
+        (["image", "{sample}", "-o", "out.png", "--report", "nowhere/r.html"], "there is no folder nowhere"),
         (["inspect", "nothing.png"], "nothing.png: no such file"),
         (["apply", "nothing.npz", "{sample}", "-o", "out.png"], "nothing.npz"),
     ],
@@ -120,6 +123,17 @@ def test_parsing_imports_nothing_heavy() -> None:
     )
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert run.stdout.splitlines()[-1] == "[]"
+
+
+def test_an_image_waits_for_nothing_that_it_does_not_need(sample: Path, tmp_path: Path) -> None:
+    heavy = ("rich", "trimesh", "igl", "potpourri3d", "xatlas", "tifffile", "scipy.sparse", "scipy.ndimage", "pydoc")
+    program = (
+        "import sys; from texloom.cli.main import main; "
+        f"status = main(['image', {str(sample)!r}, '-o', {str(tmp_path / 'out.png')!r}, '--size', '16']); "
+        f"print(status, [name for name in {heavy} if name in sys.modules])"
+    )
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert run.stdout.splitlines()[-1] == "0 []"
 
 
 def test_an_image_grows_and_its_sources_apply_again(tmp_path: Path, capsys: Captured) -> None:

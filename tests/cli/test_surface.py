@@ -81,3 +81,15 @@ def test_vertex_colours_follow_an_arrow(folder: Path, capsys: Captured) -> None:
     assert run(folder, *words) == 0
     assert json.loads(capsys.readouterr().out)["as"] == "vertex"
     assert (folder / "a.ply").read_bytes().startswith(b"ply")
+
+
+def test_inspect_says_where_sources_lie(folder: Path, capsys: Captured) -> None:
+    words = ["-o", folder / "c.glb", "--texel", 0.05, "--atlas-size", 64, "--sources", folder / "c.npz"]
+    assert run(folder, *words) == 0
+    capsys.readouterr()
+    assert command.main(["inspect", str(folder / "c.npz"), "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["of"] == "a surface" and facts["texel"] == 0.05 and facts["atlas"] == [64, 64]
+    (folder / "broken.npz").write_bytes((folder / "c.npz").read_bytes()[:5000])
+    assert command.main(["inspect", str(folder / "broken.npz")]) == 2
+    assert "broken.npz holds neither sources nor an analysis" in capsys.readouterr().err

@@ -68,14 +68,23 @@ def test_the_page_is_whole_and_stands_alone() -> None:
 
 def test_text_is_shown_as_it_is() -> None:
     text = "\n".join(Page(report_html(account())).text)
-    for said in ('texloom image "<moss>.png" -o a&b.png', "Image from <moss>.png", "1 < 2", "basecolor", "1.23", "0.50 s"):
+    for said in (
+        'texloom image "<moss>.png" -o a&b.png',
+        "Image from <moss>.png",
+        "1 < 2",
+        "basecolor",
+        "1.23",
+        "0.50 s",
+    ):
         assert said in text
     assert "Nothing" not in text
 
 
 def test_pictures_come_back_pixel_by_pixel() -> None:
     figure = account().figures["Sample"][0]
-    source = next(value for tag, name, value in Page(report_html(account())).attributes if (tag, name) == ("img", "src"))
+    source = next(
+        value for tag, name, value in Page(report_html(account())).attributes if (tag, name) == ("img", "src")
+    )
     assert source is not None
     decoded = Image.open(io.BytesIO(base64.b64decode(source.partition(",")[2])))
     np.testing.assert_array_equal(np.asarray(decoded), figure.picture)
