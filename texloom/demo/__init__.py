@@ -2,6 +2,6 @@
 
 from texloom.demo.animal import rabbit
 from texloom.demo.samples import SAMPLES, draw
-from texloom.demo.write import write_rabbit, write_sample, write_samples
+from texloom.demo.write import write_rabbit, write_sample
 
-__all__ = ["SAMPLES", "draw", "rabbit", "write_rabbit", "write_sample", "write_samples"]
+__all__ = ["SAMPLES", "draw", "rabbit", "write_rabbit", "write_sample"]

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from texloom.demo.animal import rabbit
-from texloom.demo.samples import SAMPLES, draw
+from texloom.demo.samples import draw
 from texloom.mesh.mesh import Mesh
 from texloom.output.atomic import atomic
 from texloom.output.image import write_images
@@ -17,14 +17,6 @@ SIZE = 256
 def write_sample(folder: Path, name: str, *, size: int = SIZE, seed: int = 0) -> list[Path]:
     """One sample as a folder of maps."""
     return write_images(folder, draw(name, size=size, seed=seed).maps)
-
-
-def write_samples(folder: Path, *, size: int = SIZE, seed: int = 0) -> dict[str, Path]:
-    """Every sample as a folder of maps, by name."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in SAMPLES:
-        write_sample(folder / name, name, size=size, seed=seed)
-    return {name: folder / name for name in SAMPLES}
 
 
 def write_rabbit(path: Path) -> Path:

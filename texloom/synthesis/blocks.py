@@ -15,14 +15,14 @@ from jaxtyping import Float32, Int32
 
 from texloom import draws
 from texloom.arrays import fours
-from texloom.domain.cover import group_by_site
 from texloom.domain.patches import Patches
 from texloom.exemplar.blas import single_threaded
 from texloom.kernels.launch import launch
-from texloom.kernels.patches import cut_seams, paste_blocks
+from texloom.kernels.patches import cut_seams
 from texloom.progress import Report
 from texloom.search.blocks import BlockSearch
 from texloom.synthesis.canvas import Canvas
+from texloom.synthesis.pasting import Pasting
 from texloom.synthesis.reading import read
 from texloom.synthesis.seams import Ring
 from texloom.synthesis.usage import Usage
@@ -58,14 +58,8 @@ class BlockGrowth:
                 report("blocks", (done + 1) / len(batches))
 
     @cached_property
-    def _entries(self) -> tuple[Int32[np.ndarray, "patches_plus_one"], Int32[np.ndarray, "entry"]]:
-        """Cover entries by patch."""
-        return group_by_site(self.patches.cover_patch, self.patches.count)
-
-    @cached_property
-    def _site(self) -> Int32[np.ndarray, "entry"]:
-        """The site of each cover entry."""
-        return np.repeat(np.arange(len(self.area), dtype=np.int32), np.diff(self.patches.cover_start))
+    def _pasting(self) -> Pasting:
+        return Pasting.of(self.patches)
 
     def _choose(
         self,
@@ -132,24 +126,11 @@ class BlockGrowth:
         seam: Int32[np.ndarray, "patch perimeter"],
     ) -> None:
         """Give the sites inside the seams their new sources, and keep count of what is shown."""
-        start, entries = self._entries
-        own = np.concatenate([entries[start[p] : start[p + 1]] for p in chosen])
-        owner = np.repeat(np.arange(len(chosen), dtype=np.int32), np.diff(start)[chosen])
-        site = self._site[own]
+        own = self._pasting.own(chosen)
+        site = self._pasting.site[own[0]]
         was, coloured = canvas.position[site], canvas.label[site] >= 0
-        pasted = np.empty(len(own), np.uint8)
-        turn = self.patches.cover_turn
-        launch(
-            paste_blocks,
-            len(own),
-            inputs=[
-                *(own, owner, self._site, self.patches.cover_position),
-                np.zeros(1, np.float32) if turn is None else turn,
-                *(chosen, anchors, 1.0, self.patches.width, self.ring.place, seam, fours(self.search.image)),
-            ],
-            outputs=[canvas.label, canvas.position, canvas.turn, fours(canvas.colour), pasted],
-        )
-        took = pasted != 0
+        place = self.ring.place
+        took = self._pasting.paste(canvas, self.search.image, chosen, anchors, own, place=place, seam=seam)
         usage.add(canvas.position[site[took]], self.area[site[took]])
         over = took & coloured
         usage.add(was[over], -self.area[site[over]])

@@ -8,15 +8,12 @@ import numpy as np
 from jaxtyping import Int32
 
 from texloom import draws
-from texloom.arrays import fours, in_fours
-from texloom.domain.cover import group_by_site
+from texloom.arrays import in_fours
 from texloom.domain.domain import Domain
 from texloom.domain.patches import Patches
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Exemplar
 from texloom.exemplar.patches import boundary_samples
-from texloom.kernels.launch import launch
-from texloom.kernels.patches import paste_blocks
 from texloom.progress import Report
 from texloom.search.analysis import Analysis
 from texloom.search.matching import Search
@@ -24,6 +21,7 @@ from texloom.search.principal import PcaNearest
 from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.layers import feathered
 from texloom.synthesis.least_squares import Stage, check_room, fill_unknown, known_or_new
+from texloom.synthesis.pasting import Pasting
 from texloom.synthesis.reading import read
 from texloom.synthesis.result import Result
 from texloom.synthesis.schedule import batches, breadth_first, overlaps
@@ -38,8 +36,13 @@ _ORDER = 0xB0DB  # purpose of the draws of the order
 class Laid:
     """Patches half their width apart, and the batches in which they are pasted."""
 
-    patches: Patches
-    groups: list[Int32[np.ndarray, "patch"]]
+    pasting: Pasting
+    groups: list[Int32[np.ndarray, "_"]]
+
+    @property
+    def patches(self) -> Patches:
+        """The patches themselves."""
+        return self.pasting.patches
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,7 +101,7 @@ class BoundarySampling:
         order = breadth_first(shared, seed) if self.order == "breadth-first" else None
         if order is None:
             order = draws.permutation(seed, _ORDER, count=patches.count).astype(np.int32)
-        return Laid(patches, batches(order, shared))
+        return Laid(Pasting.of(patches), batches(order, shared))
 
     def solve(self, analysis: Analysis, domain: Domain, laid: Laid, *, seed: int, report: Report) -> Result:
         """The synthesis alone, on patches already laid and an exemplar already analysed."""
@@ -128,35 +131,15 @@ class BoundarySampling:
 
     def _lay_level(self, analysis: Analysis, laid: Laid, canvas: Canvas, appearance, anchors, step: int) -> None:
         """Match and paste every batch on one level."""
-        patches = laid.patches
         vectors, index = self._index(analysis, step)
         samples = self._samples(step) @ np.array([self.patch, 1], np.int32) * np.int32(step)
         channels = analysis.appearance[0].shape[2]
-        start, entries = group_by_site(patches.cover_patch, patches.count)
-        site = np.repeat(np.arange(len(canvas.label), dtype=np.int32), np.diff(patches.cover_start))
-        everywhere = np.zeros((self.patch**2, 2), np.int32)
         for chosen in laid.groups:
-            values, known = read(canvas, patches, chosen, samples)
+            values, known = read(canvas, laid.patches, chosen, samples)
             queries = fill_unknown(values[..., :channels], known).reshape(len(chosen), -1)
             anchors[chosen] = vectors.anchors[index.nearest(queries).index]
-            own = np.concatenate([entries[start[p] : start[p + 1]] for p in chosen])
-            owner = np.repeat(np.arange(len(chosen), dtype=np.int32), np.diff(start)[chosen])
-            turn = np.zeros(1, np.float32) if patches.cover_turn is None else patches.cover_turn
-            launch(
-                paste_blocks,
-                len(own),
-                inputs=[
-                    *(own, owner, site, patches.cover_position, turn, chosen, anchors[chosen]),
-                    *(1.0 / step, self.patch, everywhere, np.zeros((len(chosen), 1), np.int32), fours(appearance)),
-                ],
-                outputs=[
-                    canvas.label,
-                    canvas.position,
-                    canvas.turn,
-                    fours(canvas.colour),
-                    np.empty(len(own), np.uint8),
-                ],
-            )
+            own = laid.pasting.own(chosen)
+            laid.pasting.paste(canvas, appearance, chosen, anchors[chosen], own, scale=1.0 / step)
 
     def _samples(self, step: int) -> Int32[np.ndarray, "sample 2"]:
         """The boundary zone of a level's patches, in texels of that level."""
