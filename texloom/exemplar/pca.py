@@ -9,6 +9,7 @@ from texloom.exemplar.blas import over_blocks, single_threaded
 
 _MOST_ROWS = 4096  # a covariance of this many even picks is as good as that of all, and does not grow with the sample
 _BLOCK = 4096  # rows projected at once
+_SMALL = 128  # dimensions: up to these NumPy finds all axes sooner than SciPy is imported
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +48,10 @@ def fit(vectors: Float32[np.ndarray, "row dim"], dimensions: int) -> Projection:
 
 def _leading_axes(centred: Float32[np.ndarray, "row dim"], count: int) -> np.ndarray:
     """Eigenvectors of the covariance with the greatest eigenvalues, in falling order."""
-    from scipy.linalg import eigh
-
     dim = centred.shape[1]
     covariance = (centred.T @ centred).astype(np.float64)
+    if dim <= _SMALL:
+        return np.linalg.eigh(covariance)[1][:, ::-1][:, :count]
+    from scipy.linalg import eigh
+
     return eigh(covariance, subset_by_index=(dim - count, dim - 1))[1][:, ::-1]

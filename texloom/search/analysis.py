@@ -59,6 +59,8 @@ class Analysis:
             os.replace(beside, path)
         except OSError as error:
             raise FileError(f"{path} cannot be written: {error.strerror}") from error
+        finally:
+            beside.unlink(missing_ok=True)
 
     def _arrays(self) -> tuple[dict[str, np.ndarray], list[str]]:
         """Everything by a short name, and the requests in the order of their numbers."""

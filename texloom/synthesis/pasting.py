@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Int32
+from jaxtyping import Bool, Float32, Int32
 
 from texloom.arrays import Image, fours
 from texloom.domain.cover import group_by_site
@@ -15,12 +15,16 @@ from texloom.synthesis.canvas import Canvas
 
 @dataclass(frozen=True, eq=False)
 class Pasting:
-    """The cover of patches turned about: the entries of each patch, and the site of each entry."""
+    """The cover of patches turned about: patch ``p`` lies over entries ``start[p] ... start[p + 1] - 1``.
+
+    Kept in the order of patches, so that pasting walks through memory instead of jumping.
+    """
 
     patches: Patches
     start: Int32[np.ndarray, "patches_plus_one"]
-    entries: Int32[np.ndarray, "entry"]
     site: Int32[np.ndarray, "entry"]
+    position: Float32[np.ndarray, "entry 2"]
+    turn: Float32[np.ndarray, "entry_or_1"]
 
     @staticmethod
     def of(patches: Patches) -> "Pasting":
@@ -28,11 +32,12 @@ class Pasting:
         start, entries = group_by_site(patches.cover_patch, patches.count)
         count = len(patches.cover_start) - 1
         site = np.repeat(np.arange(count, dtype=np.int32), np.diff(patches.cover_start))
-        return Pasting(patches, start, entries, site)
+        turn = np.zeros(1, np.float32) if patches.cover_turn is None else patches.cover_turn[entries]
+        return Pasting(patches, start, site[entries], patches.cover_position[entries], turn)
 
     def own(self, chosen: Int32[np.ndarray, "chosen"]) -> tuple[Int32[np.ndarray, "own"], Int32[np.ndarray, "own"]]:
         """Entries of the chosen patches one after the other, and which of the patches each belongs to."""
-        entries = np.concatenate([self.entries[self.start[p] : self.start[p + 1]] for p in chosen])
+        entries = np.concatenate([np.arange(*self.start[p : p + 2].tolist(), dtype=np.int32) for p in chosen])
         return entries, np.repeat(np.arange(len(chosen), dtype=np.int32), np.diff(self.start)[chosen])
 
     def paste(
@@ -60,8 +65,7 @@ class Pasting:
             paste_blocks,
             len(pasted),
             inputs=[
-                *(*own, self.site, patches.cover_position),
-                np.zeros(1, np.float32) if patches.cover_turn is None else patches.cover_turn,
+                *(*own, self.site, self.position, self.turn),
                 *(chosen, anchors, scale, patches.width, place, seam, fours(image)),
             ],
             outputs=[canvas.label, canvas.position, canvas.turn, fours(canvas.colour), pasted],
