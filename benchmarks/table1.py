@@ -135,7 +135,7 @@ def _write(rows: list[dict[str, Any]], stages: dict[str, Any], growth: list[dict
         f"{TABLE_MESH}, {SIDE}² sample, 32² patches, one level, ten iterations, seed {SEED}; the published figures are "
         "of a Pentium 4 at 3.0 GHz and 196 k vertices.",
         report.table(header, body),
-        f"The six-stage schedule of section 4.4: {stages['seconds']:.2f} s for {stages['iterations']} iterations in all.",
+        f"The six-stage schedule of section 4.4: {stages['seconds']:.2f} s, {stages['iterations']} iterations in all.",
         "## Preparation and its growth\n\nReading, field, sites and all 32² patches, in seconds; one site a vertex.",
         report.table(list(growth[0]), [list(row.values()) for row in growth]),
     ]

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-_CHUNKS_PER_THREAD = 8  # enough to even out uneven items, few enough that a launch (about 30 µs) stays cheap
+_CHUNKS_PER_THREAD = 4  # enough to even out uneven items, few enough that a launch (about 30 µs) stays cheap
 
 wp.config.log_level = wp.LOG_ERROR
 wp.config.enable_backward = False

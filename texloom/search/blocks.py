@@ -99,7 +99,7 @@ class BlockSearch:
                 self.usable,
             ],
             outputs=[best, cost],
-            grain=4,
+            grain=10,
         )
         return best, cost
 

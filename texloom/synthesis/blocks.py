@@ -113,7 +113,7 @@ class BlockGrowth:
                 *(fours(values), known, fours(self.search.image)),
             ],
             outputs=[*scratch, seam, cost],
-            grain=4,
+            grain=10,
         )
         return seam, cost
 

@@ -72,6 +72,7 @@ class Correction:
                 *(fours(self.image), self.usable, self.similar),
             ],
             outputs=[tried, found, cost],
+            grain=1024,
         )
         visits.visited[chosen] = now
         site = around.sites[chosen, 0]

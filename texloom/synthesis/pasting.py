@@ -69,5 +69,6 @@ class Pasting:
                 *(chosen, anchors, scale, patches.width, place, seam, fours(image)),
             ],
             outputs=[canvas.label, canvas.position, canvas.turn, fours(canvas.colour), pasted],
+            grain=5000,
         )
         return pasted != 0

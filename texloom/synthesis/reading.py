@@ -24,6 +24,7 @@ def read(
         known.size,
         inputs=[chosen, samples, patches.sites, weights_of(patches), fours(canvas.colour), canvas.label],
         outputs=[fours(values), known],
+        grain=6000,
     )
     return values, known
 
