@@ -1,4 +1,4 @@
-"""The published table of local resampling (Chen, Liu & Dong 2012, table 1) beside ours, and how cost grows."""
+"""The published table of local resampling (Chen, Liu & Dong, table 1) beside ours, and how cost grows."""
 
 import resource
 import time

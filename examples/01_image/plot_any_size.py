@@ -4,7 +4,7 @@ An image of any size grows from a small sample: whole blocks of it are laid wher
 meet. Left the samples, 192 texels square, in the same scale as what grew from them.
 
 Efros & Freeman 2001, "Image quilting for texture synthesis and transfer"; Lefebvre & Hoppe 2005, "Parallel controllable
-texture synthesis"; Chen, Liu & Dong 2012, "Local resampling for patch-based texture synthesis in vector fields".
+texture synthesis"; Chen, Liu & Dong, "Local resampling for patch-based texture synthesis in vector fields".
 """
 
 import texloom

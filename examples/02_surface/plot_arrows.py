@@ -4,7 +4,7 @@ Arrows at points of the surface turn the texture; the field between them is as s
 interpolated by radial basis functions over geodesic distance. Left no arrows, middle the smoothest field through
 four of them that wind around the body, right the radial basis functions through the same four.
 
-Chen, Liu & Dong 2012, "Local resampling for patch-based texture synthesis in vector fields", section 3.1.
+Chen, Liu & Dong, "Local resampling for patch-based texture synthesis in vector fields", section 3.1.
 """
 
 import texloom

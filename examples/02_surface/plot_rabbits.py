@@ -3,7 +3,7 @@
 Sites one texel apart cover the mesh; patches of the sample are traced over its triangles along a smooth direction
 field, so nothing is flattened and nothing stretched. Colours and normals are baked on an atlas. The sample is inset.
 
-Chen, Liu & Dong 2012, "Local resampling for patch-based texture synthesis in vector fields"; Knöppel, Crane, Pinkall &
+Chen, Liu & Dong, "Local resampling for patch-based texture synthesis in vector fields"; Knöppel, Crane, Pinkall &
 Schröder 2013, "Globally optimal direction fields".
 """
 

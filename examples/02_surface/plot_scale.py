@@ -3,7 +3,7 @@
 A scale field makes the same texture finer here and coarser there: patches are spaced by it, so features keep their form
 and change their size. Left uniform; middle and right progressively variant, from 0.5 on the ears to 1.5 at the feet.
 
-Chen, Liu & Dong 2012, "Local resampling for patch-based texture synthesis in vector fields", fig. 1.
+Chen, Liu & Dong, "Local resampling for patch-based texture synthesis in vector fields", fig. 1.
 """
 
 import numpy as np

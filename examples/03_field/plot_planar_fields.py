@@ -3,7 +3,7 @@
 Patches are traced along the field and its orthogonal, so they bend with it instead of being cut straight: uniform at 30
 degrees, radial, sine and ring, as in figure 8 of the paper.
 
-Chen, Liu & Dong 2012, "Local resampling for patch-based texture synthesis in vector fields", section 3.2 and fig. 8.
+Chen, Liu & Dong, "Local resampling for patch-based texture synthesis in vector fields", section 3.2 and fig. 8.
 """
 
 import numpy as np

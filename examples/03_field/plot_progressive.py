@@ -3,7 +3,7 @@
 The direction of a vector turns the texture, its length enlarges it. Left of each pair all samples are one texel apart,
 right their distance follows the length: a ring that grows outwards, and rays that do.
 
-Chen, Liu & Dong 2012, "Local resampling for patch-based texture synthesis in vector fields", fig. 2 and fig. 8.
+Chen, Liu & Dong, "Local resampling for patch-based texture synthesis in vector fields", fig. 2 and fig. 8.
 """
 
 import texloom

@@ -3,7 +3,7 @@
 From left to right: the sample; the paper's texture optimization (``LeastSquares``) and patch-based sampling
 (``BoundarySampling``); ours after the same two ideas, ``PatchSampling`` and the default, ``Optimize``.
 
-Chen, Liu & Dong 2012, "Local resampling for patch-based texture synthesis in vector fields", sections 4 and 5.
+Chen, Liu & Dong, "Local resampling for patch-based texture synthesis in vector fields", sections 4 and 5.
 """
 
 import texloom

@@ -3,7 +3,7 @@
 Left the sample; middle 32 × 32 patches on the finest level only; right three resolutions and three sizes of patch,
 coarse to fine, as in figure 5 of the paper. A single level stops at the first arrangement that is consistent nearby.
 
-Chen, Liu & Dong 2012, "Local resampling for patch-based texture synthesis in vector fields", section 4.4 and fig. 5.
+Chen, Liu & Dong, "Local resampling for patch-based texture synthesis in vector fields", section 4.4 and fig. 5.
 """
 
 import texloom

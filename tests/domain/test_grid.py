@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from texloom.domain.grid import Grid
 from texloom.errors import FieldError, ParameterError
+from texloom.sources import SourceMap
 
 sizes = st.integers(1, 20)
 
@@ -112,3 +113,15 @@ def test_bad_grids_are_refused() -> None:
         Grid(2, 4, field=np.ones((2, 4, 2)))
     with pytest.raises(FieldError, match="above 0"):
         Grid(4, 4, field=np.ones((4, 4, 2)), magnitude=np.zeros((4, 4)))
+
+
+def test_sources_of_a_field_are_told_in_image_axes() -> None:
+    """A field that runs up the picture turns every source by a quarter, counter-clockwise."""
+    field = np.zeros((4, 5, 2))
+    field[..., 0] = -1.0
+    grid = Grid(4, 5, field=field)
+    plain = SourceMap(np.zeros((20, 1, 2), np.float32), np.ones((20, 1), np.float32))
+    turned = grid.in_image_axes(plain)
+    assert turned.turn is not None
+    np.testing.assert_allclose(turned.turn, np.pi / 2, atol=1e-6)
+    assert Grid(4, 5).in_image_axes(plain) is plain

@@ -48,6 +48,7 @@ def image(
             from texloom.output.gather import gather_images
             from texloom.output.image import single_map, write_images
             from texloom.output.sources_file import SavedSources, save_sources
+            from texloom.output.tiling import begin_at, quiet_start
             from texloom.synthesis.synthesize import synthesize
 
             exemplar = read_exemplar(path, mask=mask, directx_normals=directx_normals)
@@ -63,10 +64,13 @@ def image(
             "image", path, method=chosen, seed=seed, size=size, tileable=tileable, field=field, mask=mask
         )
         with session.stage("write"):
-            maps = gather_images(result.sources, exemplar, rows=rows, columns=columns)
+            grown = domain.in_image_axes(result.sources)
+            maps = gather_images(grown, exemplar, rows=rows, columns=columns)
+            if tileable:
+                maps, grown = begin_at(quiet_start(maps.values()), maps, grown)
             session.wrote(write_images(output, maps, settings=settings))
             if sources is not None:
-                kept = SavedSources(result.sources, image_domain(rows, columns, exemplar), settings)
+                kept = SavedSources(grown, image_domain(rows, columns, exemplar), settings)
                 session.wrote(save_sources(sources, kept))
         if report is not None:
             with session.stage("report"):

@@ -1,6 +1,6 @@
 """An image as a place to grow texture: a plane or a torus of texels, one site each, straight or along a field."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,6 +14,7 @@ from texloom.domain.patches import Patches
 from texloom.domain.scatter import scatter
 from texloom.errors import FieldError, ParameterError
 from texloom.field.trace import Flow, planar_flow
+from texloom.sources import SourceMap
 
 _PHASE = 0x6C61  # purpose of the draw that shifts a torus's lattice
 
@@ -102,6 +103,14 @@ class Grid:
             cover_patch=patch,
             cover_position=np.stack(np.divmod(sample, np.int32(width)), axis=1, dtype=np.float32, casting="unsafe"),
         )
+
+    def in_image_axes(self, sources: SourceMap) -> SourceMap:
+        """The same sources with the image's axes for every site's frame, as pictures and normal maps need them."""
+        if self.field is None:
+            return sources
+        angle = np.angle(self._direction).astype(np.float32).reshape(-1, 1)
+        turn = np.broadcast_to(angle, sources.weight.shape) if sources.turn is None else sources.turn + angle
+        return replace(sources, turn=np.ascontiguousarray(turn))
 
     @cached_property
     def flow(self) -> Flow:

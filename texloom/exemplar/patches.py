@@ -1,4 +1,4 @@
-"""Square patches of an exemplar as vectors to search among (Chen et al. 2012, section 4.1.2)."""
+"""Square patches of an exemplar as vectors to search among (Chen, Liu & Dong, section 4.1.2)."""
 
 from dataclasses import dataclass
 
@@ -83,7 +83,7 @@ def even_samples(width: int, side: int) -> Int32[np.ndarray, "sample 2"]:
 def boundary_samples(width: int, zone: int, *, step: int = 1) -> Int32[np.ndarray, "sample 2"]:
     """Samples [row, column] within ``zone`` texels of the patch's border, every ``step``-th of each row, staggered.
 
-    Chen et al. 2012, section 5: the boundary zone of width w_E.
+    Chen, Liu & Dong, section 5: the boundary zone of width w_E.
     """
     if not 1 <= zone <= width:
         raise ParameterError(f"a boundary zone of {zone} texels does not fit a patch of {width}: use 1 to {width}")

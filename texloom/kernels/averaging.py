@@ -19,7 +19,7 @@ def average_patches(
 ):
     """colour[s] = sum over patches p covering s of weight[p] exemplar(anchors[p] + scale position(p, s)) / sum weight.
 
-    Chen et al. 2012, section 4.3, the least squares of the E-step. A site that no patch covers keeps its colour.
+    Chen, Liu & Dong, section 4.3, the least squares of the E-step. A site that no patch covers keeps its colour.
     """
     s = start + wp.tid()
     first = cover_start[s]

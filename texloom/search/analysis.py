@@ -75,7 +75,7 @@ class Analysis:
 
 
 def analyse(exemplar: Exemplar, *, levels: int = 1, dimensions: int = 4, feature_weight: float = 0.5) -> Analysis:
-    """Match image, its pyramid, and appearance vectors of each level (Chen et al. 2012, section 4.1)."""
+    """Match image, its pyramid, and appearance vectors of each level (Chen, Liu & Dong, section 4.1)."""
     pyramid = gaussian_pyramid(match_image(exemplar), levels, usable=exemplar.mask)
     appearance = [
         appearance_vectors(level.image, dimensions=dimensions, feature_weight=feature_weight, usable=level.usable)

@@ -17,7 +17,7 @@ from texloom.search.matching import Match, State, Vectors, squared_distance
 
 @dataclass(frozen=True, kw_only=True)
 class Clusters:
-    """k-means on the whole vectors (Chen et al. 2012, section 4.1.2, "Clustering")."""
+    """k-means on the whole vectors (Chen, Liu & Dong, section 4.1.2, "Clustering")."""
 
     clusters: int | None = None  # None: the square root of the number of candidates, where both steps cost the same
     passes: int = 10  # of Lloyd's steps
@@ -77,7 +77,7 @@ class ClusterIndex:
 
 @dataclass(frozen=True, kw_only=True)
 class PcaClusters:
-    """k-means along principal axes (Chen et al. 2012, section 4.1.2, "PCA+Clustering")."""
+    """k-means along principal axes (Chen, Liu & Dong, section 4.1.2, "PCA+Clustering")."""
 
     dimensions: int = 30
     clusters: int | None = None  # None: the square root of the number of candidates

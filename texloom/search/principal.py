@@ -13,7 +13,7 @@ from texloom.search.matching import Match, State, Vectors, squared_distance
 
 @dataclass(frozen=True)
 class PcaNearest:
-    """PCA + nearest neighbour (Chen et al. 2012, section 4.1.2, "PCA+ANN").
+    """PCA + nearest neighbour (Chen, Liu & Dong, section 4.1.2, "PCA+ANN").
 
     Departure: the paper searches the projections with an approximate tree. At 30 dimensions a dense product is faster
     than a tree at any accuracy worth having (9 ms against 66 ms at two thirds of the nearest found, 2900 × 4225), and

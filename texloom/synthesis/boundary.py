@@ -47,7 +47,7 @@ class Laid:
 
 @dataclass(frozen=True, kw_only=True)
 class BoundarySampling:
-    """Chen, Liu & Dong 2012, section 5.
+    """Chen, Liu & Dong, section 5.
 
     Every site starts with a random texel. Each patch in turn is replaced by the patch of the exemplar whose boundary
     zone is nearest, coarse to fine, so that the untextured part of a boundary is estimated; zones are blended last.

@@ -61,7 +61,7 @@ def stages(largest: int = 32) -> tuple[Stage, ...]:
 
 @dataclass(frozen=True, kw_only=True)
 class LeastSquares:
-    """Chen, Liu & Dong 2012, section 4.
+    """Chen, Liu & Dong, section 4.
 
     E-step: every site takes the weighted mean of the patches over it, weights |X_p - Z_p|^-0.8. M-step: every patch
     takes its nearest in the exemplar, in appearance space, on ``samples × samples`` representative texels.

@@ -21,7 +21,7 @@ from texloom.synthesis.result import Result
 
 @dataclass(frozen=True, kw_only=True)
 class Optimize:
-    """The energy of Chen, Liu & Dong 2012, section 4.3, lowered from a coherent start by discrete steps.
+    """The energy of Chen, Liu & Dong, section 4.3, lowered from a coherent start by discrete steps.
 
     Departures: the start is laid from blocks of the sample instead of random texels, so whole kinds of content cannot
     get lost; each site takes a texel of the sample instead of a mean of patches, so nothing blurs; only sites near the

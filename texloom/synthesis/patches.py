@@ -33,7 +33,7 @@ _LARGEST = 64  # texels: larger blocks would show as copies
 class PatchSampling:
     """Coherent blocks of the sample, matched, cut along least-cost seams and laid in order.
 
-    After Chen, Liu & Dong 2012, section 5. Departures: blocks are matched on all that is laid already instead of on an
+    After Chen, Liu & Dong, section 5. Departures: blocks are matched on all that is laid already instead of on an
     estimated boundary; seams are cut (Kwatra et al. 2003) instead of blended; every part of the sample is used its
     fair share. The paper's own method is ``BoundarySampling``.
     """

@@ -15,7 +15,7 @@ def read(
 ) -> tuple[Float32[np.ndarray, "patch sample channel"], Float32[np.ndarray, "patch sample"]]:
     """Values of ``samples`` of the ``chosen`` patches, and 1 where at least half of a sample's weight is coloured.
 
-    The barycentric rule of Chen et al. 2012, section 3.2; unknown samples are 0. O(sample · channel) time.
+    The barycentric rule of Chen, Liu & Dong, section 3.2; unknown samples are 0. O(sample · channel) time.
     """
     values = np.empty((len(chosen), len(samples), canvas.colour.shape[1]), np.float32)
     known = np.empty((len(chosen), len(samples)), np.float32)

@@ -1,4 +1,4 @@
-"""Chen, Liu & Dong 2012, "Local resampling for patch-based texture synthesis in vector fields", on one page.
+"""Chen, Liu & Dong, "Local resampling for patch-based texture synthesis in vector fields", on one page.
 
 1. A vector field through the user's arrows (§3.1):        ``vector_field``
 2. Patches resampled along it (§3.2):                      ``Surface.patches``, ``Grid.patches``
