@@ -124,7 +124,6 @@ def _write_tiff(path: Path, map: Map, settings: dict[str, str]) -> None:
         description="\n".join(f"{key}: {value}" for key, value in settings.items()),
         metadata=None,
         compression="zlib",
-        predictor=True,
         software=False,
     )
 
