@@ -35,7 +35,7 @@ class _Machine:
     device = "cpu"
     threads = min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, 64)
     pool: ThreadPoolExecutor | None = None
-    announce: Callable[[str], None] | None = None
+    told = False  # that kernels are being compiled
 
 
 def use(*, device: str | None = None, threads: int | None = None) -> None:
@@ -134,7 +134,8 @@ def _load(kernel: Any) -> None:
         return
     _initialize()
     stamp = os.path.join(wp.config.kernel_cache_dir, ".texloom-" + module.name)
-    if not os.path.exists(stamp):
+    if not os.path.exists(stamp) and not _Machine.told:
+        _Machine.told = True
         print("texloom: compiling kernels (once)", file=sys.stderr)
     wp.load_module(module, device=_Machine.device)
     with open(stamp, "w", encoding="utf-8"):
