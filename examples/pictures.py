@@ -42,7 +42,7 @@ def coat(surface: Surface, sources: SourceMap, exemplar: Exemplar, views: Sequen
     mesh = surface.mesh
     uv = unwrap(mesh, size=_ATLAS)
     tangents = corner_tangents(mesh.vertices, mesh.faces, uv, normals=mesh.vertex_normals[mesh.faces])
-    atlas = lay_atlas(sites(surface), uv, size=_ATLAS, tangents=tangents)
+    atlas = lay_atlas(SurfaceSites.of(surface), uv, size=_ATLAS, tangents=tangents)
     maps = bake(sources, atlas, {name: exemplar.maps[name] for name in ("basecolor", "normal")})
     skin = Skin(texture=maps["basecolor"].image, uv=uv, bumps=maps["normal"].image, tangents=tangents)
     pictures = [
@@ -57,21 +57,6 @@ def coloured(surface: Surface, colours: Float[np.ndarray, "site 3"], view: Camer
     skin = Skin(colours=colours)
     picture = preview(mesh.vertices, mesh.faces, skin, normals=mesh.vertex_normals, size=_SIDE, views=[view])
     return picture[:, _MARGIN:-_MARGIN]
-
-
-def sites(surface: Surface) -> SurfaceSites:
-    """A surface as outputs need it."""
-    refined = surface.refined
-    return SurfaceSites(
-        vertices=refined.mesh.vertices,
-        faces=refined.mesh.faces,
-        direction=surface.direction,
-        normal=surface.normal,
-        texel=surface.texel,
-        scale=surface.scale,
-        parent=refined.parent,
-        corners=refined.corner_barycentric,
-    )
 
 
 def beside(*pictures: Picture, gap: int = _GAP) -> Picture:

@@ -8,9 +8,10 @@ are filled. Left base colour and normals on the atlas, right the mesh that shows
 import numpy as np
 
 import texloom
-from examples.pictures import Picture, beside, coat, of_map, sites
+from examples.pictures import Picture, beside, coat, of_map
 from texloom.demo import draw, rabbit
 from texloom.output.atlas import bake, lay_atlas
+from texloom.output.sites import SurfaceSites
 from texloom.output.tangents import corner_tangents
 from texloom.output.unwrap import unwrap
 
@@ -26,7 +27,7 @@ def picture(detail: float = 1.0) -> Picture:
 
     uv = unwrap(mesh, size=SIZE)
     tangents = corner_tangents(mesh.vertices, mesh.faces, uv, normals=mesh.vertex_normals[mesh.faces])
-    atlas = lay_atlas(sites(surface), uv, size=SIZE, tangents=tangents)
+    atlas = lay_atlas(SurfaceSites.of(surface), uv, size=SIZE, tangents=tangents)
     maps = bake(sources, atlas, sample.maps)
     halves = [np.ascontiguousarray(of_map(maps[name])[::2, ::2]) for name in ("basecolor", "normal")]
     return beside(*halves, coat(surface, sources, sample))
