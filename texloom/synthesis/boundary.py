@@ -13,10 +13,10 @@ from texloom.domain.domain import Domain
 from texloom.domain.patches import Patches
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Exemplar
-from texloom.exemplar.patches import boundary_samples
+from texloom.exemplar.patches import PatchVectors, boundary_samples
 from texloom.progress import Report
 from texloom.search.analysis import Analysis
-from texloom.search.matching import Search
+from texloom.search.matching import Index, Search
 from texloom.search.principal import PcaNearest
 from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.layers import feathered
@@ -145,5 +145,5 @@ class BoundarySampling:
         """The boundary zone of a level's patches, in texels of that level."""
         return boundary_samples(self.patch // step, max(1, self.zone // step))
 
-    def _index(self, analysis: Analysis, step: int):
+    def _index(self, analysis: Analysis, step: int) -> tuple[PatchVectors, Index]:
         return analysis.index(self.search, step.bit_length() - 1, self.patch // step, self._samples(step))

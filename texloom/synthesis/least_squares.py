@@ -13,12 +13,12 @@ from texloom.domain.domain import Domain
 from texloom.domain.patches import Patches
 from texloom.errors import ExemplarError, ParameterError
 from texloom.exemplar.exemplar import Exemplar
-from texloom.exemplar.patches import even_samples
+from texloom.exemplar.patches import PatchVectors, even_samples
 from texloom.kernels.averaging import average_patches
 from texloom.kernels.launch import launch
 from texloom.progress import Report
 from texloom.search.analysis import Analysis, analyse, fingerprint
-from texloom.search.matching import Search
+from texloom.search.matching import Index, Search
 from texloom.search.principal import PcaNearest
 from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.layers import heaviest
@@ -114,50 +114,75 @@ class LeastSquares:
         self, analysis: Analysis, domain: Domain, laid: dict[int, Patches], *, seed: int, report: Report
     ) -> Result:
         """The synthesis alone, on patches already laid (by extent) and an exemplar already analysed."""
-        canvas: Canvas | None = None
+        canvas = Canvas.empty(domain.count, in_fours(analysis.appearance[0]).shape[2])
+        fits = [self._fit(analysis, laid[stage.extent], stage) for stage in self.schedule]
+        found, weight = fits[0].chance(seed)
         energy: list[float] = []
         stopped = "iterations"
-        total = len(self.schedule)
-        anchors, weight, stage = np.empty((0, 2), np.int32), np.empty(0, np.float32), self.schedule[-1]
-        for number, stage in enumerate(self.schedule):
-            patches = laid[stage.extent]
-            vectors, index = self._index(analysis, stage)
-            appearance = in_fours(analysis.appearance[stage.step.bit_length() - 1])
-            samples = self._samples(stage)
-            sampled = np.ascontiguousarray(samples @ np.array([stage.extent, 1]) * stage.step, dtype=np.int32)
-            if canvas is None:
-                canvas = Canvas.empty(domain.count, appearance.shape[2])
-                choice = draws.uniform(seed, _START, index=np.arange(patches.count)) * len(vectors.anchors)
-                found = choice.astype(np.int32)
-                weight = np.ones(patches.count, np.float32)
-            else:
-                found, weight, _ = _maximize(canvas, patches, sampled, index, analysis)
-            canvas.label[:] = np.where(np.diff(patches.cover_start) > 0, 0, -1)  # what no patch covers stays unknown
+        for number, fit in enumerate(fits):
+            if number > 0:
+                found, weight, _ = fit.maximize(canvas)
+            fit.mark_covered(canvas)
+            stopped = "iterations"
             for iteration in range(self.iterations):
-                anchors = np.ascontiguousarray(vectors.anchors[found])
-                _expect(canvas, patches, anchors, weight, appearance, stage.step)
+                fit.expect(canvas, found, weight)
                 before = found
-                found, weight, cost = _maximize(canvas, patches, sampled, index, analysis)
-                energy.append(cost / len(samples))
-                report("optimization", (number + (iteration + 1) / self.iterations) / total)
+                found, weight, cost = fit.maximize(canvas)
+                energy.append(cost / len(fit.samples))
+                report("optimization", (number + (iteration + 1) / self.iterations) / len(fits))
                 if np.array_equal(found, before):
                     stopped = "converged"
                     break
-            else:
-                stopped = "iterations"
-            anchors = np.ascontiguousarray(vectors.anchors[found])
-        count = sum(laid[stage.extent].count for stage in self.schedule)
-        sources = heaviest(
-            domain, laid[stage.extent], anchors * np.int32(stage.step), weight, analysis.appearance[0].shape[:2]
-        )
-        return Result(sources, tuple(energy), {}, stopped, count)
+        last = fits[-1]
+        anchors = last.anchors(found) * np.int32(last.step)
+        sources = heaviest(domain, last.patches, anchors, weight, analysis.appearance[0].shape[:2])
+        return Result(sources, tuple(energy), {}, stopped, sum(fit.patches.count for fit in fits))
+
+    def _fit(self, analysis: Analysis, patches: Patches, stage: Stage) -> "_Fit":
+        vectors, index = self._index(analysis, stage)
+        samples = np.ascontiguousarray(self._samples(stage) @ [stage.extent, 1] * stage.step, dtype=np.int32)
+        return _Fit(stage.step, patches, vectors, index, samples, analysis)
 
     def _samples(self, stage: Stage) -> Int32[np.ndarray, "sample 2"]:
         """Representative texels of a stage's patches [row, column], in texels of its level."""
         return even_samples(stage.width, min(self.samples, stage.width))
 
-    def _index(self, analysis: Analysis, stage: Stage):
+    def _index(self, analysis: Analysis, stage: Stage) -> tuple[PatchVectors, Index]:
         return analysis.index(self.search, stage.step.bit_length() - 1, stage.width, self._samples(stage))
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """What a stage works on: the domain's patches and their samples, the exemplar's and the search among them."""
+
+    step: int
+    patches: Patches
+    vectors: PatchVectors
+    index: Index
+    samples: Int32[np.ndarray, "sample"]
+    analysis: Analysis
+
+    def chance(self, seed: int) -> tuple[Int32[np.ndarray, "patch"], Float32[np.ndarray, "patch"]]:
+        """Random patches of the exemplar, all of one weight: where algorithm 1 begins."""
+        choice = draws.uniform(seed, _START, index=np.arange(self.patches.count)) * len(self.vectors.anchors)
+        return choice.astype(np.int32), np.ones(self.patches.count, np.float32)
+
+    def mark_covered(self, canvas: Canvas) -> None:
+        """Sites that no patch of this stage covers are unknown to it."""
+        canvas.label[:] = np.where(np.diff(self.patches.cover_start) > 0, 0, -1)
+
+    def anchors(self, found: Int32[np.ndarray, "patch"]) -> Int32[np.ndarray, "patch 2"]:
+        """Where the patches found lie in the exemplar's level."""
+        return np.ascontiguousarray(self.vectors.anchors[found])
+
+    def expect(self, canvas: Canvas, found: Int32[np.ndarray, "patch"], weight: Float32[np.ndarray, "patch"]) -> None:
+        """The E-step on the stage's level."""
+        appearance = in_fours(self.analysis.appearance[self.step.bit_length() - 1])
+        _expect(canvas, self.patches, self.anchors(found), weight, appearance, self.step)
+
+    def maximize(self, canvas: Canvas) -> tuple[Int32[np.ndarray, "patch"], Float32[np.ndarray, "patch"], float]:
+        """The M-step on the stage's samples."""
+        return _maximize(canvas, self.patches, self.samples, self.index, self.analysis)
 
 
 def known_or_new(known: Analysis | None, exemplar: Exemplar, *, levels: int, dimensions: int) -> Analysis:
@@ -216,7 +241,7 @@ def _expect(
 
 
 def _maximize(
-    canvas: Canvas, patches: Patches, samples: Int32[np.ndarray, "sample"], index, analysis: Analysis
+    canvas: Canvas, patches: Patches, samples: Int32[np.ndarray, "sample"], index: Index, analysis: Analysis
 ) -> tuple[Int32[np.ndarray, "patch"], Float32[np.ndarray, "patch"], float]:
     """The M-step: the nearest patch of each, its weight for the next E-step, and the mean mismatch."""
     channels = analysis.appearance[0].shape[2]
