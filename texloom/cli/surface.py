@@ -11,7 +11,8 @@ from texloom.cli.session import Session
 from texloom.errors import ParameterError
 
 HOMES = ("vertex", "atlas")
-_REPEATS = 3.0  # sample widths across the mesh where neither --repeats nor --texel is given
+_REPEATS = 3.0  # sample widths across the mesh where neither --repeats nor --texel is given,
+_MOST_TEXELS = 1.2e6  # or fewer of a large sample, so that it takes seconds and an atlas of 2048² holds it
 
 
 def surface(
@@ -20,7 +21,8 @@ def surface(
     samples: options.Samples,
     output: Annotated[Path, typer.Option("--output", "-o", help="A .glb, .obj or .ply.")],
     repeats: Annotated[
-        float | None, typer.Option(metavar="R", help="Sample widths across the longest side; 3 if not given.")
+        float | None,
+        typer.Option(metavar="R", help="Sample widths across the longest side; 3, or what a million texels hold."),
     ] = None,
     texel: Annotated[
         float | None, typer.Option(metavar="SIZE", help="A texel's length in world units instead.")
@@ -84,6 +86,8 @@ def surface(
             sizes = scale_field(model, scale, direction) if progressive else None
         with session.stage("sites"):
             length = texel or texel_for_repeats(model.mesh, repeats or _REPEATS, exemplar.shape[1])
+            if texel is None and repeats is None:
+                length = max(length, (float(model.mesh.face_areas.sum()) / _MOST_TEXELS) ** 0.5)
             domain = Surface.build(model.mesh, field, texel=length, scale=sizes)
             chosen = wanted.build()
         if analysis is not None:
