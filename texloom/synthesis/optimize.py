@@ -31,8 +31,8 @@ class Optimize:
     start: PatchSampling = field(default_factory=PatchSampling)
     width: int = 5  # texels per side of the neighbourhoods compared, odd
     alike: int = 0  # k of k-coherence: alike texels tried too; 2 lowers the energy by a tenth and doubles the time
-    passes: int = 2
-    reach: int = 3  # steps from the blocks' borders that are corrected
+    passes: int = 4  # the later ones visit only what changed
+    reach: int = 4  # steps from the blocks' borders that are corrected
 
     def __post_init__(self) -> None:
         if self.width < 3 or self.width % 2 == 0:
