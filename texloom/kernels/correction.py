@@ -2,6 +2,8 @@
 
 import warp as wp
 
+from texloom.kernels.patches import sample_exemplar
+
 NEAR = wp.constant(2.5)  # squared texels: how near the neighbours are whose sources are tried
 
 
@@ -27,28 +29,15 @@ def mismatch(
     total = float(0.0)
     cosine = wp.cos(angle)
     sine = wp.sin(angle)
-    bottom = float(exemplar.shape[0] - 1)
-    right = float(exemplar.shape[1] - 1)
     for k in range(sites.shape[1]):
         site = sites[i, k]
         if site >= 0:
             dr = offset[shape, k, 0]
             dc = offset[shape, k, 1]
-            y = wp.clamp(row + cosine * dr + sine * dc, 0.0, bottom)
-            x = wp.clamp(column + cosine * dc - sine * dr, 0.0, right)
-            r = int(wp.floor(y))
-            c = int(wp.floor(x))
-            fr = y - float(r)
-            fc = x - float(c)
+            y = row + cosine * dr + sine * dc
+            x = column + cosine * dc - sine * dr
             for g in range(exemplar.shape[2]):
-                value = exemplar[r, c, g]
-                if fr > 0.0 or fc > 0.0:
-                    r1 = wp.min(r + 1, exemplar.shape[0] - 1)
-                    c1 = wp.min(c + 1, exemplar.shape[1] - 1)
-                    value = (1.0 - fr) * ((1.0 - fc) * value + fc * exemplar[r, c1, g]) + fr * (
-                        (1.0 - fc) * exemplar[r1, c, g] + fc * exemplar[r1, c1, g]
-                    )
-                d = value - colour[site, g]
+                d = sample_exemplar(exemplar, y, x, g) - colour[site, g]
                 total += wp.dot(d, d)
             if total > limit:
                 break
