@@ -19,13 +19,25 @@ def test_a_copy_with_gaps_is_made_whole_again(seed: int, share: float, wrap: boo
     grid = Grid(11, 9, wrap)
     known = rng.random(grid.count) < share
     known[rng.integers(grid.count)] = True
-    place = np.stack(np.divmod(np.arange(grid.count), 9), 1) + np.float32([4, 7])
+    place = np.stack(np.divmod(np.arange(grid.count), 9), 1) + np.float32(
+        [400, 700]
+    )  # far from every border of the exemplar
     position = np.where(known[:, None], place, 0).astype(np.float32)
     before = known.copy()
     fill_gaps(grid, known, position, np.zeros(grid.count, np.float32), WIDE)
     np.testing.assert_array_equal(known, before)
     apart = (position - place) / ([11, 9] if wrap else [1, 1])  # across a torus's border the copy goes on
     np.testing.assert_array_equal(apart, np.rint(apart) if wrap else np.zeros_like(apart))
+
+
+def test_at_the_border_of_the_exemplar_what_is_continued_stands_still() -> None:
+    grid, known = Grid(8, 8), np.zeros(64, bool)
+    known[27] = True  # (3, 3), shown from texel (1, 6) of a 4 × 8 exemplar
+    position = np.zeros((64, 2), np.float32)
+    position[27] = 1, 6
+    fill_gaps(grid, known, position, np.zeros(64, np.float32), (4, 8))
+    wanted = np.clip(np.stack(np.divmod(np.arange(64), 8), 1) + [-2, 3], 0, [3, 7])
+    np.testing.assert_array_equal(position, wanted)
 
 
 def test_where_nothing_is_known_nothing_changes() -> None:
