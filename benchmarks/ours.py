@@ -8,6 +8,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -23,8 +24,8 @@ class Grown:
     stages: dict[str, float]
 
 
-def grow(sample: Path, size: int, *, tileable: bool = False, seed: int = SEED) -> Grown:
-    """The default method on a square of ``size`` texels; reading the sample is not timed."""
+def grow(sample: Path, size: int, *, method: Any = None, tileable: bool = False, seed: int = SEED) -> Grown:
+    """A method (None: the default) on a square of ``size`` texels; reading the sample is not timed."""
     from texloom.domain.grid import Grid
     from texloom.io.stack import read_exemplar
     from texloom.output.gather import gather_images
@@ -33,7 +34,7 @@ def grow(sample: Path, size: int, *, tileable: bool = False, seed: int = SEED) -
 
     exemplar = read_exemplar(sample)
     start = time.perf_counter()
-    result = synthesize(exemplar, Grid(size, size, wrap=tileable), seed=seed)
+    result = synthesize(exemplar, Grid(size, size, wrap=tileable), method, seed=seed)
     maps = gather_images(result.sources, exemplar, rows=size, columns=size)
     pictures = {name: stored(map, map.bits) for name, map in maps.items()}
     return Grown(pictures, time.perf_counter() - start, result.seconds)

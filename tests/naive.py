@@ -160,3 +160,37 @@ def correct_site(
         for place in tried
     ]
     return tried[int(np.argmin(costs))], min(costs)
+
+
+def window_components(
+    window: ndarray, known: ndarray, axes: ndarray, mean: ndarray, variance: ndarray, noise: float
+) -> ndarray:
+    """The likeliest components of a window (row, column, channel) of which some texels are known."""
+    flat = axes.reshape(-1, axes.shape[-1]).astype(float)
+    there = np.repeat(known.ravel(), window.shape[2]).astype(float)
+    left = np.where(there > 0, (window - mean).ravel(), 0.0)
+    if known.all():
+        return flat.T @ left
+    prior = np.diag(noise / np.maximum(variance.astype(float), 1e-3 * noise))
+    return np.linalg.solve(flat.T @ (there[:, None] * flat) + prior, flat.T @ left)
+
+
+def scan_pixel(
+    image: ndarray,
+    centre: ndarray,
+    vectors: ndarray,
+    query: ndarray,
+    around: list[tuple[ndarray, ndarray]],
+    suggested: list[int],
+    shortlist: int,
+) -> tuple[int, float]:
+    """The candidate a pixel takes, and its mean squared difference to what is ``around`` it: (step, colour) each.
+
+    The nearest window, or of a shortlist of them and what the neighbours suggest the one whose colours fit best.
+    """
+    distance = ((vectors - query) ** 2).sum(1)
+    tried = np.argsort(distance, kind="stable")[:shortlist].tolist()
+    if shortlist > 1:
+        tried += [guess for guess in suggested if guess >= 0]
+    costs = [sum(((image[tuple(centre[c] + step)] - colour) ** 2).sum() for step, colour in around) for c in tried]
+    return tried[int(np.argmin(costs))], min(costs) / max(len(around), 1)

@@ -14,7 +14,7 @@ MapKind = Literal["colour", "normal", "data"]
 
 def fours(values: Float32[np.ndarray, "*shape channel"]) -> Float32[np.ndarray, "*shape group 4"]:
     """A view of the same values, four channels a vector, as kernels take them."""
-    return values.reshape(*values.shape[:-1], -1, 4)
+    return values.reshape(*values.shape[:-1], values.shape[-1] // 4, 4)
 
 
 def in_fours(image: Image) -> Image:

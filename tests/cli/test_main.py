@@ -58,11 +58,23 @@ def test_version(capsys: Captured) -> None:
         (["image", "{sample}", "-o", "out.png", "--threads", "0"], "--threads"),
         (["image", "{sample}", "-o", "out.png", "--size", "0x4"], "--size 0x4: sides go from 1 to 32768 texels"),
         (["image", "{sample}", "-o", "out.png", "--size", "large"], "give for example 512 or 640x480"),
-        (["image", "{sample}", "-o", "out.png", "--method", "weave"], "'weave': choose optimize or patches"),
-        (["image", "{sample}", "-o", "out.png", "--search", "x"], "exhaustive, pca, pca-clusters or clusters"),
+        (["image", "{sample}", "-o", "out.png", "--method", "weave"], "'weave': choose optimize, patches"),
+        (
+            ["image", "{sample}", "-o", "out.png", "--search", "x"],
+            "pca, pca-tree, pca-clusters or clusters",
+        ),
+        (
+            ["image", "{sample}", "-o", "out.png", "--passes", "3"],
+            "--passes 3 is not for optimize: add --method refine",
+        ),
+        (
+            ["image", "{sample}", "-o", "out.png", "--method", "refine", "--order", "spiral"],
+            "unknown order 'spiral'",
+        ),
+        (["image", "{sample}", "-o", "out.png", "--method", "refine", "--window", "1"], "window 1 is too small"),
         (["image", "{sample}", "-o", "out.png", "--preset", "x"], "unknown preset 'x': choose resampling"),
         (["image", "{sample}", "-o", "out.png", "--search", "pca"], "add --preset resampling"),
-        (["image", "{sample}", "{sample}", "-o", "out.png"], "2 samples were given"),
+        (["image", "{sample}", "{sample}", "-o", "out.png", "--mask", "m.png"], "--mask m.png is for one sample"),
         (["image", "{sample}", "-o", "nowhere/out.png"], "there is no folder nowhere"),
         (["score", "bunny.glb", "{sample}"], "bunny.glb is a mesh: the first file is the sample"),
         (["score", "{sample}", "bunny.stl"], "bunny.stl is a mesh without a direction field"),
@@ -113,6 +125,15 @@ def test_a_sample_scores_perfectly_against_itself(sample: Path, capsys: Captured
     header, row = capsys.readouterr().out.splitlines()
     assert header.split() == ["map", "swd", "coherence", "completeness", "copy", "seam"]
     assert row.split()[:2] == ["basecolor", "0.000"]
+
+
+def test_refine_patches_makes_images_without_a_field(sample: Path, tmp_path: Path, capsys: Captured) -> None:
+    out = tmp_path / "out.png"
+    words = ["image", sample, "-o", out, "--size", "40x30", "--method", "refine-patches"]
+    assert command.main([*map(str, words), "--tileable", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["patches"] > 1 and Image.open(out).size == (40, 30)
+    out.unlink()
+    assert "use optimize there" in fails_in_one_line([*words, "--field", "ring"], capsys) and not out.exists()
 
 
 def test_parsing_imports_nothing_heavy() -> None:

@@ -15,8 +15,9 @@ from texloom.demo.shapes import ball
 from texloom.demo.write import write_obj
 from texloom.domain.grid import Grid
 from texloom.exemplar.exemplar import Exemplar
-from texloom.output.gather import gather_images
+from texloom.output.gather import gather_images, identity_sources
 from texloom.output.image import write_images
+from texloom.output.report import report_html
 from texloom.sources import SourceMap
 from texloom.synthesis.result import Result
 
@@ -97,3 +98,13 @@ def test_without_scores_it_says_why(folder: Path) -> None:
     words = ["image", str(folder / "a weave"), "-o", str(folder / "t"), "--size", "5", "--report"]
     assert command.main([*words, str(folder / "t.html")]) == 0
     assert "No scores: scores need pictures" in (folder / "t.html").read_text(encoding="utf-8")
+
+
+def test_every_curve_of_a_method_is_plotted(exemplar: Exemplar) -> None:
+    sources = identity_sources(*exemplar.shape)
+    curves = {"MSE": (3.0, 2.0, 1.0), "changed pixels": (9.0, 4.0, 0.0), "none yet": ()}
+    grid = Grid(*exemplar.shape)
+    account = of_image(Run(exemplar, Result(sources, curves=curves), SETTINGS, {}, "texloom"), grid, exemplar.maps)
+    html = report_html(account)
+    assert {"MSE", "changed pixels"} <= set(Page(html).text) and "none yet" not in html
+    assert html.count("<polyline") == 2

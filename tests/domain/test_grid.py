@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from texloom.domain.domain import Lattice
 from texloom.domain.grid import Grid
 from texloom.errors import FieldError, ParameterError
 from texloom.sources import SourceMap
@@ -125,3 +126,13 @@ def test_sources_of_a_field_are_told_in_image_axes() -> None:
     assert turned.turn is not None
     np.testing.assert_allclose(turned.turn, np.pi / 2, atol=1e-6)
     assert Grid(4, 5).in_image_axes(plain) is plain
+
+
+def test_whole_rows_unless_a_field_turns_the_frames() -> None:
+    plane, torus = Grid(4, 5).lattice, Grid(4, 5, wrap=True).lattice
+    assert plane is not None and plane == Lattice(4, 5, False)
+    assert torus is not None and torus == Lattice(4, 5, True)
+    assert Grid(4, 5, field=np.ones((4, 5, 2))).lattice is None
+    row, column = np.array([1, -1, 4]), np.array([4, 0, 6])
+    np.testing.assert_array_equal(plane.site_at(row, column), [9, -1, -1])
+    np.testing.assert_array_equal(torus.site_at(row, column), [9, 15, 1])

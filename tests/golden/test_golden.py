@@ -23,6 +23,7 @@ from texloom.synthesis.boundary import BoundarySampling
 from texloom.synthesis.least_squares import LeastSquares
 from texloom.synthesis.optimize import Optimize
 from texloom.synthesis.patches import PatchSampling
+from texloom.synthesis.refine import Refine
 from texloom.synthesis.synthesize import Method, synthesize
 
 HERE = Path(__file__).parent
@@ -33,6 +34,8 @@ TOLERANCE = 2.0  # of 255, mean difference of the pictures
 METHODS: dict[str, Method] = {
     "optimize": Optimize(),
     "patches": PatchSampling(),
+    "refine": Refine(),
+    "refine-scan-line": Refine(order="scan-line"),
     "least-squares": LeastSquares(),
     "boundary": BoundarySampling(patch=16),
 }

@@ -130,7 +130,7 @@ def test_pasting_takes_sites_inside_the_seam_or_bare(seed: int, turned: bool, sc
     label, position = rng.integers(-1, 1, count).astype(np.int32), colours(rng, count, 2)
     site_turn, colour, pasted = np.zeros(count, np.float32), colours(rng, count, 4), np.empty(12, np.uint8)
     was = [a.copy() for a in (label, position, site_turn, colour)]
-    inputs = [entry, owner, site, at, turn, chosen, anchors, scale, width, band.place, seam, fours(image)]
+    inputs = [entry, owner, site, at, turn, chosen, anchors, scale, width, band.place, seam, fours(image), 5]
     outputs = [label, position, site_turn, fours(colour), pasted]
     launch(kernels.paste_blocks, 12, inputs=inputs, outputs=outputs)
 
@@ -141,7 +141,7 @@ def test_pasting_takes_sites_inside_the_seam_or_bare(seed: int, turned: bool, sc
         took = was[0][s] < 0 or depth >= seam[p, around]
         assert pasted[i] == took
         where = anchors[p] + np.float32(scale) * at[e]
-        assert label[s] == (chosen[p] if took else was[0][s])
+        assert label[s] == (5 + chosen[p] if took else was[0][s])
         np.testing.assert_allclose(position[s], where if took else was[1][s], rtol=1e-6)
         assert site_turn[s] == (turn[e] if took and turned else 0)
         np.testing.assert_allclose(colour[s], naive.bilinear(image, *position[s]) if took else was[3][s], atol=1e-5)

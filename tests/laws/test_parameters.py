@@ -12,6 +12,7 @@ from texloom.synthesis.boundary import BoundarySampling
 from texloom.synthesis.least_squares import LeastSquares, Stage, stages
 from texloom.synthesis.optimize import Optimize
 from texloom.synthesis.patches import PatchSampling
+from texloom.synthesis.refine import Refine
 from texloom.synthesis.synthesize import Method, synthesize
 
 BAD: dict[str, Callable[[], object]] = {
@@ -26,6 +27,17 @@ BAD: dict[str, Callable[[], object]] = {
     "overlap nan": lambda: PatchSampling(overlap=float("nan")),
     "balance -0.1": lambda: PatchSampling(balance=-0.1),
     "balance nan": lambda: PatchSampling(balance=float("nan")),
+    "order 'rows'": lambda: Refine(order="rows"),  # pyright: ignore[reportArgumentType]
+    "'median'": lambda: Refine(difference="median"),  # pyright: ignore[reportArgumentType]
+    "window 2": lambda: Refine(window=2),
+    "pitch 0": lambda: Refine(order="scan-line", pitch=0),
+    "pitch 6": lambda: Refine(pitch=6),
+    "passes 0": lambda: Refine(passes=0),
+    "dimensions 0": lambda: Refine(dimensions=0),
+    "shortlist 0": lambda: Refine(shortlist=0),
+    "threshold -0.5": lambda: Refine(threshold=-0.5),
+    "threshold nan": lambda: Refine(threshold=float("nan")),
+    "alike -2": lambda: Refine(alike=-2),
     "'spiral'": lambda: PatchSampling(order="spiral"),  # pyright: ignore[reportArgumentType]
     "'scan'": lambda: BoundarySampling(order="scan"),  # pyright: ignore[reportArgumentType]
     "patch 30": lambda: BoundarySampling(patch=30),
@@ -69,6 +81,7 @@ def test_an_exemplar_smaller_than_the_patches_is_refused_by_its_own_size(method:
 def test_a_mask_that_leaves_no_block_is_refused() -> None:
     mask = np.zeros((32, 32), bool)
     mask[::5] = True
-    for method in (Optimize(), PatchSampling(patch=8), BoundarySampling(patch=16), LeastSquares(schedule=stages(16))):
+    ours = (Optimize(), PatchSampling(patch=8), Refine(), Refine(order="scan-line"))
+    for method in (*ours, BoundarySampling(patch=16), LeastSquares(schedule=stages(16))):
         with pytest.raises(ExemplarError, match="mask"):
             synthesize(exemplar(32).with_mask(mask), Grid(20, 20), method)

@@ -7,7 +7,7 @@ import pytest
 
 from tests.data import DATA, needs_data
 from texloom.errors import ParameterError
-from texloom.metrics.score import grid_places, score
+from texloom.metrics.score import fewer, grid_places, score
 
 
 def _noise(seed: int, shape: tuple[int, ...] = (32, 32, 3)) -> np.ndarray:
@@ -113,3 +113,34 @@ def test_a_tiled_photograph_wins_all_but_copy_and_seam() -> None:
     assert scores.completeness < 1e-3 and 0.0 < scores.coherence < 6.0
     assert scores.copy == pytest.approx(64.0, abs=3.0)
     assert scores.seam > 1.0
+
+
+def test_what_may_not_be_used_of_a_sample_does_not_count() -> None:
+    """Beside the sample lies something else; masked, the scores are those of the sample alone."""
+    sample, result = _noise(6, (24, 28, 3)), _noise(7, (26, 20, 3))
+    beside = np.concatenate([sample, _noise(8, (24, 12, 3)) // 2], axis=1)
+    usable = np.arange(40)[None].repeat(24, 0) < 28
+    alone, masked, whole = (
+        score(sample, result, queries=None),
+        score(beside, result, usable=usable, queries=None),
+        score(beside, result, queries=None),
+    )
+    assert astuple(masked) == pytest.approx(astuple(alone), rel=1e-5)
+    assert whole.swd > 1.3 * alone.swd
+    few = score(beside, result, usable=usable, queries=60)
+    assert few.completeness == pytest.approx(alone.completeness, rel=0.03)
+    with pytest.raises(ParameterError, match="no 7x7 patch of the sample is usable"):
+        score(beside, result, usable=usable & (np.arange(24)[:, None] < 6))
+
+
+def test_of_large_pictures_a_part_is_enough() -> None:
+    row, column = np.mgrid[:60, :72]
+    sample = (128 + 50 * np.sin(row / 7) + 50 * np.sin(column / 5 + row / 30)).astype(np.uint8)[..., None]
+    result = np.clip(sample[::-1] * 0.8 + 10 + _noise(9, sample.shape) // 16, 0, 255).astype(np.uint8)
+    every, some = score(sample, result, queries=None), score(sample, result, most=900)
+    assert (some.swd, some.coherence, some.completeness) == pytest.approx(
+        (every.swd, every.coherence, every.completeness), rel=0.05
+    )
+    assert astuple(score(sample, result, most=10**6)) == astuple(score(sample, result))
+    assert [fewer(2500, patches, 1000) for patches in (1000, 2000, 10**6)] == [2500, 1250, 800]
+    assert fewer(None, 10**6, 1000) is None and fewer(500, 10**6, 1000) == 500

@@ -69,3 +69,14 @@ def test_chart_seams_by_hand() -> None:
     assert chart_seam_ratio(values, edges, across=np.array([[0, 1]])) == pytest.approx(1.0, rel=1e-5)
     assert chart_seam_ratio(values, edges, across=np.zeros((0, 2), int)) == 0.0
     assert chart_seam_ratio(np.zeros_like(values), edges, across=np.array([[1, 2]])) == 0.0
+
+
+def test_what_may_not_be_used_of_a_sample_does_not_count() -> None:
+    sample, shown = _picture(8, (24, 24, 3)), _picture(9, (24, 24, 3))
+    beside = np.concatenate([sample, _picture(10, (24, 10, 3)) / 2], axis=1)
+    usable = np.arange(34)[None].repeat(24, 0) < 24
+    patches, values = _patches((24, 24), 12, 4), shown.reshape(-1, 3)
+    alone, masked = score_surface(sample, patches, values), score_surface(beside, patches, values, usable=usable)
+    assert vars(masked) == pytest.approx(vars(alone), rel=1e-5)
+    with pytest.raises(ParameterError, match="no 7x7 patch of the sample is usable"):
+        score_surface(beside, patches, values, usable=np.zeros_like(usable))

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from texloom.output.plots import bar_plot, line_plot, nice_ticks
+from texloom.output.plots import bar_plot, curve_plot, line_plot, nice_ticks
 
 numbers = st.floats(-1e6, 1e6, allow_nan=False).map(lambda value: round(value, 6))
 
@@ -42,3 +42,17 @@ def test_bars_are_as_long_as_their_values() -> None:
     lengths = [float(width) for width in re.findall(r'width="([\d.]+)"', svg)]
     assert lengths[1] == pytest.approx(4 * lengths[0], rel=1e-2) and lengths[2] == 1.0
     assert "read &amp; write" in svg and "4.00 s" in svg
+
+
+def test_a_marked_place_is_where_its_peak_is_drawn() -> None:
+    along = [2.0, 4.0, 8.0, 32.0]
+    svg = curve_plot(along, [0.0, 1.0, 5.0, 2.0], across="texels", mark=(8.0, "8 & more"))
+    Xml.fromstring(svg)
+    points = re.search(r'points="([^"]*)"', svg)
+    assert points is not None and "8 &amp; more" in svg
+    places = [tuple(map(float, point.split(","))) for point in points[1].split()]
+    assert min(places, key=lambda place: place[1]) == places[2]
+    assert f'd="M{places[2][0]:.1f} ' in svg
+    steps = [b[0] - a[0] for a, b in zip(places, places[1:], strict=False)]
+    assert steps == pytest.approx([steps[0], steps[0], 2 * steps[0]], abs=0.2)
+    assert all(0 <= x <= 640 and 0 <= y <= 260 for x, y in places)

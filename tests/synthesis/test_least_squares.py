@@ -9,6 +9,7 @@ from tests.synthesis.samples import exemplar
 from texloom.arrays import in_fours
 from texloom.domain.grid import Grid
 from texloom.errors import ExemplarError, ParameterError
+from texloom.exemplar.join import join
 from texloom.search import Exhaustive
 from texloom.search.analysis import analyse
 from texloom.synthesis.canvas import Canvas
@@ -102,3 +103,15 @@ def test_a_sample_smaller_than_the_stages_is_refused_by_its_own_size() -> None:
 def test_stages_divide(largest: int) -> None:
     with pytest.raises(ParameterError, match=f"{largest}"):
         stages(largest)
+
+
+def test_room_is_what_may_be_used_of_the_smallest_sample() -> None:
+    """A large picture around little that may be used is refused by what may be used."""
+    method, grid = LeastSquares(schedule=stages(32)), Grid(40, 40)
+    mask = np.zeros((64, 64), bool)
+    mask[:, :20] = True
+    with pytest.raises(ExemplarError, match="64x64 texels, 20 across where its mask allows, but a patch needs 32x32"):
+        synthesize(exemplar(64).with_mask(mask), grid, method)
+    joined = join([exemplar(64), exemplar(24, seed=1)])
+    with pytest.raises(ExemplarError, match="the smallest of 2 samples is 24 texels across where it is used"):
+        synthesize(joined.exemplar, grid, method)

@@ -16,6 +16,8 @@ def check_analysis(path: Path | None, preset: str | None) -> None:
     """Refuse a file of analysis for the methods that keep none."""
     if path is not None and preset is None:
         raise ParameterError(f"--analysis {path.name} is for a paper's method: add --preset resampling")
+    if path is not None and preset != "resampling":
+        raise ParameterError(f"--analysis {path.name} is for --preset resampling, {preset} keeps none: leave it out")
 
 
 def with_analysis(method: "Method", path: Path, exemplar: "Exemplar", session: "Session") -> "Method":

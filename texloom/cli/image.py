@@ -1,4 +1,4 @@
-"""``texloom image``: a rectangle of any size from a sample."""
+"""``texloom image``: a rectangle of any size from one sample or several."""
 
 from pathlib import Path
 from typing import Annotated
@@ -22,6 +22,10 @@ def image(
     method: options.Method = None,
     search: options.Search = None,
     preset: options.Preset = None,
+    order: options.Order = None,
+    window: options.Window = None,
+    pitch: options.Pitch = None,
+    passes: options.Passes = None,
     analysis: options.AnalysisFile = None,
     mask: options.Mask = None,
     seed: options.Seed = 0,
@@ -32,10 +36,10 @@ def image(
     threads: options.Threads = None,
     as_json: options.Json = False,
 ) -> None:
-    """Grow an image of any size from a sample; a stack of maps comes out aligned."""
+    """Grow an image of any size from samples used together; a stack of maps comes out aligned."""
     rows, columns = options.parse_size(size)
-    wanted = methods.wish(method, search, preset)
-    path = options.only_sample(samples)
+    wanted = methods.wish(method, search, preset, order=order, window=window, pitch=pitch, passes=passes)
+    options.check_mask(mask, samples)
     check_analysis(analysis, preset)
     options.check_report(report)
     options.check_output(output, sources, report, analysis)
@@ -44,14 +48,15 @@ def image(
         with session.stage("read"):
             from texloom.cli.planes import plane
             from texloom.cli.reapply import image_domain
-            from texloom.io.stack import read_exemplar
+            from texloom.cli.samples import read_samples, tell_dropped
             from texloom.output.gather import gather_images
             from texloom.output.image import single_map, write_images
             from texloom.output.sources_file import SavedSources, save_sources
             from texloom.output.tiling import begin_at, quiet_start
             from texloom.synthesis.synthesize import synthesize
 
-            exemplar = read_exemplar(path, mask=mask, directx_normals=directx_normals)
+            joined = read_samples(samples, mask=mask, directx_normals=directx_normals)
+            exemplar = joined.exemplar
             domain = plane(rows, columns, field=field, tileable=tileable)
             if options.is_file(output):
                 single_map(exemplar.maps, output)
@@ -61,7 +66,7 @@ def image(
         result = synthesize(exemplar, domain, chosen, seed=seed, report=session.report)
         session.add(result.seconds)
         settings = options.settings(
-            "image", path, method=chosen, seed=seed, size=size, tileable=tileable, field=field, mask=mask
+            "image", *samples, method=chosen, seed=seed, size=size, tileable=tileable, field=field, mask=mask
         )
         with session.stage("write"):
             grown = domain.in_image_axes(result.sources)
@@ -79,6 +84,7 @@ def image(
 
                 run = Run(exemplar, result, settings, dict(session.seconds), options.command_line(context))
                 session.wrote(write_report(report, of_image(run, domain, maps)))
+        tell_dropped(joined)
         session.finish(
             {
                 "method": wanted.method,
@@ -86,8 +92,10 @@ def image(
                 "seed": seed,
                 "size": (columns, rows),
                 "maps": list(maps),
+                "dropped": list(joined.dropped),
                 "patches": result.patches,
                 "energy": list(result.energy),
+                "curves": {name: list(values) for name, values in result.curves.items()},
                 "stopped": result.stopped,
             }
         )

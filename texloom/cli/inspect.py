@@ -9,20 +9,28 @@ import typer
 
 from texloom.cli import options
 from texloom.cli.session import Session
-from texloom.errors import FileError
+from texloom.errors import FileError, ParameterError
 
 
 def inspect(
+    context: typer.Context,
     file: Annotated[
         Path,
         typer.Argument(metavar="FILE", help="An image, a folder of maps, a mesh, saved sources or a saved analysis."),
     ],
     material: Annotated[str | None, typer.Option(metavar="NAME", help="Look at this material of a mesh only.")] = None,
+    report: Annotated[
+        Path | None, typer.Option(metavar="FILE.html", help="A page of a sample: its spectrum and its lattice.")
+    ] = None,
     as_json: options.Json = False,
 ) -> None:
-    """Say what a file holds: sizes, maps, parts, defects and what would be mended."""
+    """Say what a file holds: sizes, maps, scale and period of a sample, parts, defects and what would be mended."""
     if not file.exists():
         raise FileError(f"{file}: no such file or folder")
+    options.check_report(report)
+    options.check_output(report)
+    if report is not None and file.suffix.lower() in (*options.MESH_SUFFIXES, ".npz"):
+        raise ParameterError(f"--report tells of a sample, and {file.name} is none: give an image or a folder of maps")
     with Session(as_json=as_json) as session, session.stage("read"):
         if file.suffix.lower() in options.MESH_SUFFIXES:
             session.finish(_describe_mesh(file, material))
@@ -31,11 +39,16 @@ def inspect(
         elif file.suffix.lower() == ".npz":
             raise FileError(f"{file.name} holds neither sources nor an analysis, or is damaged: save it again")
         else:
-            session.finish(_describe_stack(file))
+            session.finish(_describe_stack(file, context, report, session, as_json))
 
 
-def _describe_stack(path: Path) -> dict[str, Any]:
+def _describe_stack(
+    path: Path, context: typer.Context, report: Path | None, session: Session, as_json: bool
+) -> dict[str, Any]:
+    from texloom.cli import structure as told
+    from texloom.exemplar.suggest import structure
     from texloom.io.stack import read_exemplar
+    from texloom.output.report import write_report
 
     exemplar = read_exemplar(path)
     rows, columns = exemplar.shape
@@ -49,7 +62,11 @@ def _describe_stack(path: Path) -> dict[str, Any]:
         for name, map in exemplar.maps.items()
     }
     masked = 0.0 if exemplar.mask is None else 1.0 - float(exemplar.mask.mean())
-    return {"kind": "stack" if path.is_dir() else "image", "size": (columns, rows), "maps": maps, "masked": masked}
+    found = structure(exemplar)
+    if report is not None:
+        session.wrote(write_report(report, told.account(path, exemplar, found, options.command_line(context))))
+    described = {"kind": "stack" if path.is_dir() else "image", "size": (columns, rows), "maps": maps, "masked": masked}
+    return described | (told.facts(found) | told.curves(found) if as_json else told.lines(found))
 
 
 def _describe_archive(path: Path) -> dict[str, Any]:

@@ -12,6 +12,8 @@ import typer
 
 from texloom.cli.apply import apply
 from texloom.cli.demo import demo
+from texloom.cli.fill import fill
+from texloom.cli.fuse import fuse
 from texloom.cli.image import image
 from texloom.cli.inspect import inspect
 from texloom.cli.score import score
@@ -28,7 +30,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (image, surface, apply, inspect, score, demo):
+for _command in (image, surface, fill, fuse, apply, inspect, score, demo):
     app.command()(_command)
 
 

@@ -1,13 +1,22 @@
 """Method and search objects from the names given on the command line."""
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Literal
 
-from texloom.cli.options import METHODS, PRESETS, SEARCHES, choose
+from texloom.cli.options import METHODS, PRESET_METHODS, PRESETS, SEARCHES, choose
 from texloom.errors import ParameterError
 
 if TYPE_CHECKING:
+    from texloom.synthesis.fuse import BeltMethod
+    from texloom.synthesis.growth import Grower
+    from texloom.synthesis.optimize import Optimize
+    from texloom.synthesis.patches import PatchSampling
+    from texloom.synthesis.refine import Refine
+    from texloom.synthesis.refine_patches import RefinePatches
     from texloom.synthesis.synthesize import Method
+
+Task = Literal["fill", "fuse"]
 
 
 @dataclass(frozen=True)
@@ -17,27 +26,68 @@ class MethodWish:
     method: str
     search: str | None
     preset: str | None
+    refining: Mapping[str, Any] = field(default_factory=dict)  # parameters of Refine that are set
 
     def build(self) -> "Method":
         """Our method of that name, or with a preset the paper's own, with one of its searches."""
-        if self.preset is None:
-            from texloom.synthesis.optimize import Optimize
-            from texloom.synthesis.patches import PatchSampling
+        if self.preset == "resampling":
+            from texloom.search import SEARCHES as by_name
+            from texloom.systems import resampling
 
-            return Optimize() if self.method == "optimize" else PatchSampling()
-        from texloom.search import SEARCHES as by_name
-        from texloom.systems import resampling
+            search = None if self.search is None else by_name[self.search]
+            if self.method == "optimize":
+                return resampling.optimization(search=search)
+            return resampling.patch_sampling(search=search)
+        return self._refining(None) if self.preset == "refine" else self._ours()
 
-        search = None if self.search is None else by_name[self.search]
-        if self.method == "optimize":
-            return resampling.optimization(search=search)
-        return resampling.patch_sampling(search=search)
+    def grower(self, task: Task) -> "Grower":
+        """The same where texture is there already, to be continued; a paper's own for that task.
+
+        Raises: ParameterError, if the methods of the preset begin with nothing.
+        """
+        if self.preset == "resampling":
+            raise ParameterError(
+                "--preset resampling grows whole textures and cannot continue one: choose --preset refine, or none"
+            )
+        return self._refining(task) if self.preset == "refine" else self._ours()
+
+    def belt_method(self) -> "BeltMethod | None":
+        """How a paper fills the belts of a fusion."""
+        if self.preset != "refine":
+            return None
+        from texloom.systems.refine import belt_refinement
+
+        return belt_refinement
+
+    def _ours(self) -> "Optimize | PatchSampling | Refine | RefinePatches":
+        from texloom.synthesis.optimize import Optimize
+        from texloom.synthesis.patches import PatchSampling
+
+        if self.method == "refine":
+            from texloom.synthesis.refine import Refine
+
+            return Refine(**self.refining)
+        if self.method == "refine-patches":
+            from texloom.synthesis.refine_patches import RefinePatches
+
+            return RefinePatches()
+        return Optimize() if self.method == "optimize" else PatchSampling()
+
+    def _refining(self, task: Task | None) -> "Refine | RefinePatches":
+        """Of the paper of ``refine``, what it does the task with, but for the parameters set."""
+        from texloom.systems import refine
+
+        if self.method == "refine-patches":
+            return refine.patches()
+        papers = {None: refine.refinement, "fill": refine.hole_refinement, "fuse": refine.region_refinement}
+        return replace(papers[task](), **self.refining)
 
 
-def wish(method: str | None, search: str | None, preset: str | None) -> MethodWish:
-    """The method asked for.
+def wish(method: str | None, search: str | None, preset: str | None, **refining: str | int | None) -> MethodWish:
+    """The method asked for; ``refining`` are parameters of ``refine``, None where not given.
 
-    Raises: ParameterError, for an unknown name, or a search without the preset it belongs to.
+    Without a name it is the preset's first, or the default. Raises: ParameterError, for an unknown name, a search
+    without the preset it belongs to, or ``refining`` of another method.
     """
     if preset is not None:
         choose("preset", preset, PRESETS)
@@ -45,4 +95,14 @@ def wish(method: str | None, search: str | None, preset: str | None) -> MethodWi
         choose("search", search, SEARCHES)
         if preset is None:
             raise ParameterError(f"--search {search} is part of a paper's method: add --preset {PRESETS[0]}")
-    return MethodWish(choose("method", method or METHODS[0], METHODS), search, preset)
+        if preset != PRESETS[0]:
+            raise ParameterError(f"--search {search} is for --preset {PRESETS[0]}, {preset} has its own: leave it out")
+    offered = METHODS if preset is None else PRESET_METHODS[preset]
+    method = choose("method", method or offered[0], METHODS)
+    if method not in offered:
+        raise ParameterError(f"--preset {preset} has no {method}: choose {' or '.join(offered)}, or no preset")
+    given = {name: value for name, value in refining.items() if value is not None}
+    if given and method != "refine":
+        name, value = next(iter(given.items()))
+        raise ParameterError(f"--{name} {value} is not for {method}: add --method refine")
+    return MethodWish(method, search, preset, given)

@@ -9,9 +9,11 @@ import typer
 
 from texloom.errors import ParameterError
 
-METHODS = ("optimize", "patches")
-SEARCHES = ("exhaustive", "pca", "pca-clusters", "clusters")
-PRESETS = ("resampling",)
+METHODS = ("optimize", "patches", "refine", "refine-patches")
+SEARCHES = ("exhaustive", "pca", "pca-tree", "pca-clusters", "clusters")
+PRESETS = ("resampling", "refine")
+PRESET_METHODS = {"resampling": METHODS[:2], "refine": METHODS[2:]}  # those that the paper has, its own first
+ORDERS = ("parallel", "scan-line")
 DEVICES = ("cpu", "cuda")
 MESH_SUFFIXES = (".obj", ".ply", ".off", ".stl", ".glb", ".gltf")
 IMAGE_SUFFIXES = (".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg")
@@ -23,9 +25,13 @@ Samples = Annotated[
 Sample = Annotated[
     Path, typer.Argument(metavar="SAMPLE", help="An image, or a folder of maps (basecolor.png, normal.png, ...).")
 ]
-Method = Annotated[str | None, typer.Option(metavar="NAME", help="optimize or patches.")]
+Method = Annotated[str | None, typer.Option(metavar="NAME", help=f"{', '.join(METHODS[:-1])} or {METHODS[-1]}.")]
 Search = Annotated[str | None, typer.Option(metavar="NAME", help=f"{', '.join(SEARCHES[:-1])} or {SEARCHES[-1]}.")]
 Preset = Annotated[str | None, typer.Option(metavar="KEY", help=f"A paper's own parameters: {', '.join(PRESETS)}.")]
+Order = Annotated[str | None, typer.Option(metavar="NAME", help=f"With refine: {' or '.join(ORDERS)}.")]
+Window = Annotated[int | None, typer.Option(metavar="N", help="With refine: texels a side that are compared.")]
+Pitch = Annotated[int | None, typer.Option(metavar="N", help="With refine in scan-line order: texels between seeds.")]
+Passes = Annotated[int | None, typer.Option(metavar="N", help="With refine: passes at most.")]
 Seed = Annotated[int, typer.Option(metavar="N", help="Same seed, same pixels.")]
 Device = Annotated[str, typer.Option(metavar="NAME", help="cpu or cuda.")]
 Threads = Annotated[int | None, typer.Option(metavar="N", min=1, max=1024, help="CPU threads; all cores if not given.")]
@@ -57,6 +63,15 @@ def only_sample(samples: Sequence[Path]) -> Path:
             f"{len(samples)} samples were given, but each method takes 1 for now: give one image or folder"
         )
     return samples[0]
+
+
+def check_mask(mask: Path | None, samples: Sequence[Path]) -> None:
+    """Refuse one mask for several samples."""
+    if mask is not None and len(samples) > 1:
+        raise ParameterError(
+            f"--mask {mask.name} is for one sample, but {len(samples)} were given: "
+            "put a mask.png into each sample's folder, or make what is not used transparent"
+        )
 
 
 def parse_size(text: str) -> tuple[int, int]:
@@ -93,9 +108,10 @@ def command_line(context: typer.Context) -> str:
     return shlex.join(["texloom", *(str(word) for word in context.find_root().obj or ())])
 
 
-def settings(command: str, sample: Path, **facts: object) -> dict[str, str]:
-    """What is stored in every file written: version, command, sample and the parameters that are set."""
+def settings(command: str, *samples: Path, **facts: object) -> dict[str, str]:
+    """What is stored in every file written: version, command, samples and the parameters that are set."""
     from importlib.metadata import version
 
     stored = {name: str(value) for name, value in facts.items() if value is not None and value is not False}
-    return {"software": f"texloom {version('texloom')}", "command": command, "sample": sample.name, **stored}
+    names = ", ".join(sample.name for sample in samples)
+    return {"software": f"texloom {version('texloom')}", "command": command, "sample": names, **stored}

@@ -17,6 +17,7 @@ from texloom.field.direction import from_vectors
 from texloom.mesh.gltf import Document, accessor, primitives, unpack
 from texloom.mesh.mesh import Mesh
 from texloom.metrics import SurfaceScores, score_surface
+from texloom.metrics.patches import Usable
 from texloom.output.gather import gather_sites
 from texloom.output.image import stored
 from texloom.output.material import base_colour
@@ -52,10 +53,18 @@ def scored_patches(surface: Surface) -> Patches:
     return surface.patches(surface.centres(_WIDTH, 0), _WIDTH)
 
 
-def score_sites(sample: Map, patches: Patches, values: Float32[np.ndarray, "site channel"]) -> SurfaceScores:
-    """Scores of one map, both as stored."""
+def score_sites(
+    sample: Map,
+    patches: Patches,
+    values: Float32[np.ndarray, "site channel"],
+    *,
+    usable: Usable = None,
+    most: int | None = None,
+) -> SurfaceScores:
+    """Scores of one map, both as stored; see ``score_surface``."""
     seen = np.clip(encode(values) if sample.kind == "colour" else values, 0.0, 1.0)
-    return score_surface(stored(sample, min(sample.bits, 16)), patches, seen[:, : sample.image.shape[2]])
+    shown = seen[:, : sample.image.shape[2]]
+    return score_surface(stored(sample, min(sample.bits, 16)), patches, shown, usable=usable, most=most)
 
 
 def from_sources(saved: SavedSources, exemplar: Exemplar, name: str) -> Painted:

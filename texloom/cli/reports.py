@@ -17,11 +17,13 @@ from texloom.metrics import score
 from texloom.output.debug import broken_edges, grid_edges, source_colours, with_borders
 from texloom.output.gather import gather_sites, identity_sources
 from texloom.output.image import encoded_picture, stored
+from texloom.output.plots import line_plot
 from texloom.output.preview import Skin
 from texloom.output.report import Account, Figure, fitted
 from texloom.synthesis.result import Result
 
 _LARGE, _SMALL = 1024, 384  # pixels, the longest side of the main pictures and of the others
+_COMPARED = 65_536  # patches of a picture, those of 256×256 texels: more take long and hardly change the scores
 _COLOURS = "Where each texel of the sample lies, as a colour"
 _ORIGIN = "Where in the sample each texel comes from; red where copied pieces meet"
 
@@ -42,7 +44,7 @@ def of_image(run: Run, grid: Grid, maps: Mapping[str, Map]) -> Account:
     name, *others = maps
     theirs, ours = run.exemplar.maps[name], maps[name]
     figures = {
-        "Sample": _sample(run.exemplar),
+        "Sample": sample_figures(run.exemplar),
         "Result": [Figure(fitted(stored(ours, 8), _LARGE), f"{name}, {grid.columns}×{grid.rows} texels")],
         "Its other maps": [Figure(fitted(stored(maps[other], 8), _SMALL), other) for other in others],
         "Origin": [
@@ -52,7 +54,7 @@ def of_image(run: Run, grid: Grid, maps: Mapping[str, Map]) -> Account:
     }
     try:
         scores, remark = (
-            vars(score(as_seen(theirs), as_seen(ours))),
+            vars(score(as_seen(theirs), as_seen(ours), usable=run.exemplar.mask, most=_COMPARED)),
             f"Of {name}, against the sample; 0 is best, but for copy.",
         )
     except ParameterError as error:
@@ -66,7 +68,7 @@ def of_surface(run: Run, grown: Grown, skin: Skin) -> Account:
     sites = f"{grown.surface.count} sites, a texel is {grown.surface.texel:.4g} long"
     origin = Skin(colours=_site_origin(run, grown.surface), gloss=0.0)
     figures = {
-        "Sample": _sample(run.exemplar),
+        "Sample": sample_figures(run.exemplar),
         "Result": [Figure(fitted(picture(grown, skin), _LARGE), f"{grown.model.path.name} from four sides, {sites}")],
         "Origin": [
             Figure(fitted(picture(grown, origin), _LARGE), _ORIGIN),
@@ -76,7 +78,7 @@ def of_surface(run: Run, grown: Grown, skin: Skin) -> Account:
     map = run.exemplar.maps[name]
     try:
         values = gather_sites(run.result.sources, map)
-        scores = vars(score_sites(map, scored_patches(grown.surface), values))
+        scores = vars(score_sites(map, scored_patches(grown.surface), values, usable=run.exemplar.mask, most=_COMPARED))
         remark = f"Of {name}, on pictures laid along the field, against the sample; 0 is best."
     except ParameterError as error:
         scores, remark = {}, f"No scores: {error}."
@@ -95,11 +97,12 @@ def _account(
         scores=scores,
         remark=remark,
         energy=run.result.energy,
+        plots={name: line_plot(values, across="pass") for name, values in run.result.curves.items() if values},
         seconds=run.seconds,
     )
 
 
-def _sample(exemplar: Exemplar) -> list[Figure]:
+def sample_figures(exemplar: Exemplar) -> list[Figure]:
     """Every map, and which texels were imitated where not all were."""
     rows, columns = exemplar.shape
     figures = [Figure(fitted(stored(map, 8), _SMALL), name) for name, map in exemplar.maps.items()]

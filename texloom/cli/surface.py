@@ -1,12 +1,13 @@
 """``texloom surface``: texture over a mesh, along a field, back on the user's own mesh."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, cast
 
 import typer
 
 from texloom.cli import methods, options
 from texloom.cli.analyses import check_analysis, with_analysis
+from texloom.cli.fuse import BELTS, Belts, Palette
 from texloom.cli.session import Session
 from texloom.errors import ParameterError
 
@@ -20,6 +21,12 @@ def surface(
     mesh: Annotated[Path, typer.Argument(metavar="MESH", help="OBJ, PLY, OFF, STL, GLB or glTF.")],
     samples: options.Samples,
     output: Annotated[Path, typer.Option("--output", "-o", help="A .glb, .obj or .ply.")],
+    fuse: Annotated[
+        str | None,
+        typer.Option(metavar="MAP", help="Where each sample goes: a mesh with colours, vertex, or a painted texture."),
+    ] = None,
+    palette: Palette = None,
+    belts: Belts = None,
     repeats: Annotated[
         float | None,
         typer.Option(metavar="R", help="Sample widths across the longest side; 3, or what a million texels hold."),
@@ -58,10 +65,12 @@ def surface(
     threads: options.Threads = None,
     as_json: options.Json = False,
 ) -> None:
-    """Grow texture over a mesh of any shape, along a direction and a scale field."""
+    """Grow texture over a mesh of any shape, along a direction and a scale field; several samples where a map says."""
     chosen_home = _home(home, output)
     wanted = methods.wish(method, search, preset)
-    path = options.only_sample(samples)
+    options.check_mask(mask, samples)
+    _check_fusion(fuse, palette, preset)
+    belts = options.choose("belts", belts or BELTS[0], BELTS)
     if repeats is not None and texel is not None:
         raise ParameterError("--repeats and --texel both set the size of the texture: give one of them")
     check_analysis(analysis, preset)
@@ -70,33 +79,54 @@ def surface(
 
     with Session(device=device, threads=threads, as_json=as_json) as session:
         with session.stage("read"):
-            from texloom.cli import bring_home
+            from texloom.cli import bring_home, fusing
             from texloom.cli.fields import direction_field, scale_field
             from texloom.cli.reapply import surface_domain
+            from texloom.cli.samples import read_each, tell_dropped
             from texloom.domain.surface import Surface, texel_for_repeats
+            from texloom.exemplar.join import join
             from texloom.io.mesh import read_mesh
-            from texloom.io.stack import read_exemplar
             from texloom.output.sources_file import SavedSources, save_sources
+            from texloom.synthesis import fuse as fusion
             from texloom.synthesis.synthesize import synthesize
 
-            exemplar = read_exemplar(path, mask=mask, directx_normals=directx_normals)
+            stacks = read_each(samples, mask=mask, directx_normals=directx_normals)
+            joined = join(stacks)
+            colours = fusing.parse_palette(palette)
             model = read_mesh(mesh, material=material)
         with session.stage("field"):
             field = direction_field(model, direction, order=symmetry)
             sizes = scale_field(model, scale, direction) if progressive else None
         with session.stage("sites"):
-            length = texel or texel_for_repeats(model.mesh, repeats or _REPEATS, exemplar.shape[1])
+            length = texel or texel_for_repeats(model.mesh, repeats or _REPEATS, stacks[0].shape[1])
             if texel is None and repeats is None:
                 length = max(length, (float(model.mesh.face_areas.sum()) / _MOST_TEXELS) ** 0.5)
             domain = Surface.build(model.mesh, field, texel=length, scale=sizes)
             chosen = wanted.build()
-        if analysis is not None:
-            chosen = with_analysis(chosen, analysis, exemplar, session)
-        result = synthesize(exemplar, domain, chosen, seed=seed, report=session.report)
+        assigned = {}
+        if fuse is not None:
+            with session.stage("map"):
+                wish = fusing.of_surface(fuse, model, domain, len(stacks), palette=colours)
+            fused = fusion.fuse(
+                stacks,
+                wish.labels,
+                domain,
+                method=wanted.grower("fuse"),
+                belts=cast(fusion.Filling, belts),
+                seed=seed,
+                report=session.report,
+            )
+            joined, result = fused.joined, fused.result
+            assigned = {"samples": wish.told(samples, fused.labels)}
+        else:
+            if analysis is not None:
+                chosen = with_analysis(chosen, analysis, joined.exemplar, session)
+            result = synthesize(joined.exemplar, domain, chosen, seed=seed, report=session.report)
+        exemplar = joined.exemplar
         session.add(result.seconds)
         settings = options.settings(
             "surface",
-            path,
+            *samples,
             method=chosen,
             seed=seed,
             mesh=mesh.name,
@@ -105,6 +135,8 @@ def surface(
             scale=scale,
             symmetry=symmetry,
             mask=mask,
+            fuse=None if fuse is None else Path(fuse).name,
+            belts=None if fuse is None else belts,
         )
         grown = bring_home.Grown(model, domain, result.sources, exemplar)
         with session.stage("write"):
@@ -128,6 +160,7 @@ def surface(
 
                 run = Run(exemplar, result, settings, dict(session.seconds), options.command_line(context))
                 session.wrote(write_report(report, of_surface(run, grown, homecoming.skin)))
+        tell_dropped(joined)
         session.finish(
             {
                 "method": wanted.method,
@@ -135,7 +168,9 @@ def surface(
                 "seed": seed,
                 "sites": domain.count,
                 "texel": length,
+                **assigned,
                 "maps": list(exemplar.maps),
+                "dropped": list(joined.dropped),
                 "patches": result.patches,
                 "energy": list(result.energy),
                 "stopped": result.stopped,
@@ -144,6 +179,18 @@ def surface(
                 "mends": list(model.mends),
             }
         )
+
+
+def _check_fusion(fuse: str | None, palette: str | None, preset: str | None) -> None:
+    """Raises: ParameterError, for options that do not go together."""
+    if fuse is None and palette is not None:
+        raise ParameterError(f"--palette {palette} names the colours of a map: add --fuse MAP")
+    if preset == "refine":
+        raise ParameterError(
+            "--preset refine goes line by line, which a mesh has none of: give --method refine instead"
+        )
+    if fuse is not None and preset is not None:
+        raise ParameterError(f"--fuse and --preset {preset} exclude each other: that paper's methods take one sample")
 
 
 def _home(home: str | None, output: Path) -> str:

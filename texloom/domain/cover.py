@@ -1,4 +1,4 @@
-"""The inverse of patches: which entries fall on each site."""
+"""The inverse of patches: which entries fall on each site. Tables in compressed rows."""
 
 import numpy as np
 from jaxtyping import Int32
@@ -19,3 +19,10 @@ def group_by_site(
     order = np.empty(starts[-1], np.int32)
     launch(group_entries, 1, inputs=[site], outputs=[starts[:-1].copy(), order])
     return starts, order
+
+
+def ranges(start: Int32[np.ndarray, "rows_plus_one"], rows: np.ndarray) -> np.ndarray:
+    """Entries of these rows of a compressed table, one row after the other."""
+    length = start[rows + 1] - start[rows]
+    first = np.repeat(start[rows] - (np.cumsum(length) - length), length)
+    return first + np.arange(len(first))

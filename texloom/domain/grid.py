@@ -8,7 +8,8 @@ from jaxtyping import Complex64, Float, Float32, Float64, Int32
 
 from texloom import draws
 from texloom.domain.cover import group_by_site
-from texloom.domain.neighbourhoods import Neighbourhoods
+from texloom.domain.domain import Lattice
+from texloom.domain.neighbourhoods import NEAR, Neighbourhoods, stencil
 from texloom.domain.network import lay_patches
 from texloom.domain.patches import Patches
 from texloom.domain.scatter import scatter
@@ -66,6 +67,11 @@ class Grid:
         if not self.wrap:
             pairs = [(site[:, :-1], site[:, 1:]), (site[:-1], site[1:])]
         return np.concatenate([np.stack([a.ravel(), b.ravel()], 1) for a, b in pairs])
+
+    @property
+    def lattice(self) -> Lattice | None:
+        """The grid itself, unless a field turns its frames."""
+        return Lattice(self.rows, self.columns, self.wrap) if self.field is None else None
 
     def centres(self, pitch: float, seed: int) -> Int32[np.ndarray, "patch"]:
         """An even lattice, in scan-line order, at most ``pitch`` texels apart (less, so that the size divides).
@@ -135,10 +141,11 @@ class Grid:
         return self.flow.power
 
     def neighbourhoods(self, sites: Int32[np.ndarray, "n"], reach: int) -> Neighbourhoods:
-        """Squares of ``2 reach + 1`` texels a side, the middle one first; -1 outside a plane."""
-        side = np.arange(-reach, reach + 1, dtype=np.int32)
-        steps = np.stack(np.meshgrid(side, side, indexing="ij"), -1).reshape(-1, 2)
-        steps = steps[np.argsort(np.abs(steps).max(1), kind="stable")]
+        """Squares of ``2 reach + 1`` texels a side, thinned where they are wide, the middle first; -1 outside a plane.
+
+        Along a field they are small: frames turn with the distance.
+        """
+        steps = stencil(reach if self.field is None else min(reach, NEAR))
         row, column = np.divmod(sites[:, None], np.int32(self.columns))
         row, column = row + steps[:, 0], column + steps[:, 1]
         if self.wrap:

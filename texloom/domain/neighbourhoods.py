@@ -18,3 +18,28 @@ class Neighbourhoods:
     sites: Int32[np.ndarray, "n k"]
     offset: Float32[np.ndarray, "n_or_1 k 2"]
     turn: Float32[np.ndarray, "n k"] | None = None
+
+
+NEAR = 3
+"""Texels within which a neighbourhood holds every site; and where frames turn, its greatest reach."""
+
+
+def stencil(reach: int) -> Int32[np.ndarray, "k 2"]:
+    """[row, column] steps of a square of ``2 reach + 1`` texels a side: all near ones, farther out ever fewer.
+
+    From NEAR on every third row and column is kept, from three times that every sixth, and so on: about forty steps
+    for each doubling of the reach. The middle comes first, then rings of growing size.
+    """
+    parts, inner, outer, step = [square(min(NEAR, reach))], NEAR, 3 * NEAR, NEAR
+    while inner < reach:
+        steps = square(min(outer, reach) // step) * np.int32(step)
+        parts.append(steps[np.abs(steps).max(1) > inner])
+        inner, outer, step = outer, 2 * outer, 2 * step
+    return np.concatenate(parts)
+
+
+def square(reach: int) -> Int32[np.ndarray, "k 2"]:
+    """All [row, column] steps of a square of ``2 reach + 1`` texels a side: the middle, then rings of growing size."""
+    side = np.arange(-reach, reach + 1, dtype=np.int32)
+    steps = np.stack(np.meshgrid(side, side, indexing="ij"), -1).reshape(-1, 2)
+    return np.ascontiguousarray(steps[np.argsort(np.abs(steps).max(1), kind="stable")])

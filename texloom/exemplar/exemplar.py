@@ -26,11 +26,27 @@ class Map:
     bits: int  # 8 or 16 (integers), 32 (float)
 
 
+@dataclass(frozen=True)
+class Part:
+    """The rectangle of one of several samples in the images that hold them all: its first texel and its size."""
+
+    row: int
+    column: int
+    rows: int
+    columns: int
+
+    @property
+    def slices(self) -> tuple[slice, slice]:
+        """The rectangle as an index of arrays."""
+        return slice(self.row, self.row + self.rows), slice(self.column, self.column + self.columns)
+
+
 @dataclass(frozen=True, eq=False)
 class Exemplar:
     """Aligned maps of one size, by name ("basecolor", "normal", "roughness", "metallic", "height", "ao", "alpha", ...).
 
     ``mask`` is True where a texel may be used; None means everywhere. The first map leads where one picture is needed.
+    ``parts`` are the rectangles of several samples side by side (``texloom.exemplar.join``); empty where it is one.
 
     Raises: ExemplarError, if there is no map, sizes differ, a side is under 8 texels, a value is not finite,
     or the mask leaves nothing.
@@ -38,6 +54,7 @@ class Exemplar:
 
     maps: Mapping[str, Map]
     mask: Bool[np.ndarray, "row column"] | None = None
+    parts: tuple[Part, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.maps:
@@ -70,6 +87,13 @@ class Exemplar:
         """The mask, written out."""
         return np.ones(self.shape, bool) if self.mask is None else self.mask
 
+    @property
+    def least_side(self) -> int:
+        """Texels: the shorter side of the rectangle around all that may be used; of several samples, the least."""
+        whole = Part(0, 0, *self.shape)
+        usable = [self.usable[part.slices] for part in self.parts or (whole,)]
+        return min(int(np.ptp(np.flatnonzero(m.any(axis)))) + 1 for m in usable if m.any() for axis in (0, 1))
+
     def crop(self, rows: slice, columns: slice) -> "Exemplar":
         """The same stack, cut to a rectangle."""
         maps = {name: replace(m, image=np.ascontiguousarray(m.image[rows, columns])) for name, m in self.maps.items()}
@@ -77,7 +101,7 @@ class Exemplar:
 
     def with_mask(self, mask: Bool[np.ndarray, "row column"]) -> "Exemplar":
         """The same stack, used only where ``mask`` and the present mask are both True."""
-        return Exemplar(self.maps, mask if self.mask is None else mask & self.mask)
+        return replace(self, mask=mask if self.mask is None else mask & self.mask)
 
     def _check_alignment(self) -> None:
         sizes = {name: m.image.shape[:2] for name, m in self.maps.items()}

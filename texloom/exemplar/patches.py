@@ -62,7 +62,7 @@ def patch_anchors(
         )
     if usable is None:
         usable = np.ones(shape[:2], bool)
-    whole = _whole(usable, width)
+    whole = whole_squares(usable, width)
     row, column = np.nonzero(whole[::step, ::step])
     if len(row) == 0:
         raise ExemplarError(
@@ -93,8 +93,8 @@ def boundary_samples(width: int, zone: int, *, step: int = 1) -> Int32[np.ndarra
     return np.stack([row[keep], column[keep]], axis=1).astype(np.int32)
 
 
-def _whole(usable: Bool[np.ndarray, "row column"], width: int) -> Bool[np.ndarray, "anchor_row anchor_column"]:
-    """Where the square below and right of a texel is wholly usable, by a summed-area table."""
+def whole_squares(usable: Bool[np.ndarray, "row column"], width: int) -> Bool[np.ndarray, "anchor_row anchor_column"]:
+    """Where the square below and right of a texel is wholly usable, by a summed-area table; empty if none fits in."""
     total = np.zeros((usable.shape[0] + 1, usable.shape[1] + 1), np.int64)
     total[1:, 1:] = usable.cumsum(axis=0).cumsum(axis=1)
     inside = total[width:, width:] - total[:-width, width:] - total[width:, :-width] + total[:-width, :-width]

@@ -9,12 +9,16 @@ from texloom.exemplar.blas import over_blocks, single_threaded
 
 _MOST_ROWS = 4096  # a covariance of this many even picks is as good as that of all, and does not grow with the sample
 _BLOCK = 4096  # rows projected at once
+_NOTHING = 1e-6  # of the greatest variance: what is less is rounding
 _SMALL = 128  # dimensions: up to these NumPy finds all axes sooner than SciPy is imported
 
 
 @dataclass(frozen=True, eq=False)
 class Projection:
-    """``(vector - mean) @ axes``; the axes are orthonormal columns, the direction of greatest variance first."""
+    """``(vector - mean) @ axes``; the axes are orthonormal columns, the direction of greatest variance first.
+
+    Of vectors that vary in fewer directions than there are axes, the last axes may be 0.
+    """
 
     mean: Float32[np.ndarray, "dim"]
     axes: Float32[np.ndarray, "dim component"]
@@ -48,7 +52,16 @@ def fit(vectors: Float32[np.ndarray, "row dim"], dimensions: int) -> Projection:
 
 def _leading_axes(centred: Float32[np.ndarray, "row dim"], count: int) -> np.ndarray:
     """Eigenvectors of the covariance with the greatest eigenvalues, in falling order."""
-    dim = centred.shape[1]
+    rows, dim = centred.shape
+    if dim > max(rows, _SMALL):  # the axes lie in the span of the rows: the smaller product finds them
+        from scipy.linalg import eigh
+
+        count = min(count, max(rows - 1, 1))
+        products = (centred @ centred.T).astype(np.float64)
+        values, shares = eigh(products, subset_by_index=(rows - count, rows - 1))
+        axes = centred.T @ shares[:, ::-1]
+        varies = values[::-1] > _NOTHING * max(values[-1], 0.0)
+        return np.where(varies, axes / np.maximum(np.linalg.norm(axes, axis=0), 1e-30), 0.0)
     covariance = (centred.T @ centred).astype(np.float64)
     if dim <= _SMALL:
         return np.linalg.eigh(covariance)[1][:, ::-1][:, :count]

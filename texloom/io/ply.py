@@ -32,8 +32,7 @@ def read_ply(content: bytes) -> Triangles:
 
     Raises: FileError, if the header and the rows below it disagree.
     """
-    order, elements, body, line = _header(content)
-    tables = _text_tables(elements, body, line) if order is None else _binary_tables(elements, body, order)
+    tables = read_tables(content)
     vertex, face = tables.get("vertex", {}), tables.get("face", {})
     if not {"x", "y", "z"} <= vertex.keys():
         raise FileError("the PLY file has no vertex positions (x, y, z)")
@@ -48,6 +47,15 @@ def read_ply(content: bytes) -> Triangles:
     triangles, _ = fan(counts)
     faces = corners[triangles].astype(np.int64)
     return Triangles(vertices, faces, _uv(vertex, face, faces, triangles, counts))
+
+
+def read_tables(content: bytes) -> dict[str, dict[str, Any]]:
+    """The columns of every element of a PLY file, by name; list properties as (counts, values strung together).
+
+    Raises: FileError, if the header and the rows below it disagree.
+    """
+    order, elements, body, line = _header(content)
+    return _text_tables(elements, body, line) if order is None else _binary_tables(elements, body, order)
 
 
 def _uv(

@@ -242,6 +242,7 @@ def paste_blocks(
     place: wp.array2d(dtype=int),  # (sample, 2): perimeter index and depth of each sample
     seam: wp.array2d(dtype=int),
     exemplar: wp.array3d(dtype=wp.vec4),
+    first: int,  # label of patch 0
     label: wp.array(dtype=int),
     position: wp.array2d(dtype=float),
     turn: wp.array(dtype=float),
@@ -264,7 +265,7 @@ def paste_blocks(
     pasted[i] = wp.uint8(0)
     if label[site] < 0 or place[j, 1] >= seam[p, place[j, 0]]:
         pasted[i] = wp.uint8(1)
-        label[site] = chosen[p]
+        label[site] = first + chosen[p]
         if entry_turn.shape[0] > 1:
             turn[site] = entry_turn[e]
         position[site, 0] = float(anchors[p, 0]) + scale * row

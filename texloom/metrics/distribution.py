@@ -3,11 +3,11 @@
 from functools import cache
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Bool, Float32
 
 from texloom.arrays import Image
 from texloom.exemplar.blas import over_blocks
-from texloom.metrics.patches import SIDE, Picture, patch_vectors
+from texloom.metrics.patches import SIDE, Picture, Usable, patch_places, patch_vectors
 
 _PROJECTIONS = 128
 _QUANTILES = 1024
@@ -15,18 +15,21 @@ LEVELS = 3
 _BLOCK = 32  # projections at a time
 
 
-def sliced_wasserstein(sample: Image, result: Picture) -> float:
+def sliced_wasserstein(sample: Image, result: Picture, usable: Usable = None, *, most: int | None = None) -> float:
     """100 × the mean one-dimensional Wasserstein distance of 7×7 patches over fixed projections and pyramid levels.
 
     Values are encoded, in [0, 1]. Each level projects all whole patches of both pictures on 128 fixed unit vectors and
     averages the distance of 1024 evenly spaced quantiles; the levels (full, half, quarter size, means of 2×2 texels)
-    count alike. A level too small for one patch is left out.
+    count alike. A level too small for one patch is left out, and patches of the sample that are not wholly usable.
+    Of more than ``most`` patches as many are looked at, evenly spaced.
     """
     distances = []
     for _ in range(LEVELS):
-        distances.append(projected_wasserstein(patch_vectors(sample), patch_vectors(result)))
+        ours, theirs = patch_vectors(result, most=most), patch_vectors(sample, usable, most)
+        distances.append(projected_wasserstein(theirs, ours))
         sample, result = halve(sample), halve(result)
-        if min(sample.shape[:2] + result.shape[:2]) < SIDE:
+        usable = halved(usable)
+        if min(sample.shape[:2] + result.shape[:2]) < SIDE or not len(patch_places(sample, usable)):
             break
     return 100.0 * float(np.mean(distances))
 
@@ -35,6 +38,11 @@ def halve(image: Float32[np.ndarray, "row column *rest"]) -> Float32[np.ndarray,
     """Means of 2×2 texels; an odd last row or column is dropped."""
     even = image[: image.shape[0] // 2 * 2, : image.shape[1] // 2 * 2]
     return (even[0::2, 0::2] + even[1::2, 0::2] + even[0::2, 1::2] + even[1::2, 1::2]) * np.float32(0.25)
+
+
+def halved(usable: Usable) -> Bool[np.ndarray, "half_row half_column"] | None:
+    """The mask of the halved picture: usable where all four texels are."""
+    return None if usable is None else halve(usable.astype(np.float32)) == 1
 
 
 def projected_wasserstein(sample: Float32[np.ndarray, "texel dim"], result: Float32[np.ndarray, "patch dim"]) -> float:

@@ -8,10 +8,10 @@ from jaxtyping import Float, Float32, Int, Shaped
 from texloom.arrays import Image
 from texloom.domain.patches import Patches
 from texloom.errors import ParameterError
-from texloom.metrics.distribution import LEVELS, halve, projected_wasserstein
+from texloom.metrics.distribution import LEVELS, halve, halved, projected_wasserstein
 from texloom.metrics.nearest import nearest
-from texloom.metrics.patches import SIDE, encoded, patch_vectors
-from texloom.metrics.score import QUERIES
+from texloom.metrics.patches import SIDE, Usable, encoded, evenly, patch_places, patch_vectors
+from texloom.metrics.score import QUERIES, fewer
 
 
 @dataclass(frozen=True)
@@ -44,14 +44,20 @@ def read_pictures(
 
 
 def score_surface(
-    sample: Shaped[np.ndarray, "..."], patches: Patches, values: Float32[np.ndarray, "site channel"]
+    sample: Shaped[np.ndarray, "..."],
+    patches: Patches,
+    values: Float32[np.ndarray, "site channel"],
+    *,
+    usable: Usable = None,
+    most: int | None = None,
 ) -> SurfaceScores:
     """Scores of a textured surface against its sample, both encoded, through patches of 7 samples width or more.
 
     The pictures of all patches together are the result. swd counts the pyramid levels that the patches are wide enough
-    for; coherence and completeness are asked of about as many patches as on a plane.
+    for; coherence and completeness are asked of about as many patches as on a plane. ``usable`` and ``most`` are those
+    of ``score``.
 
-    Raises: ParameterError, if patches are too small or none is whole.
+    Raises: ParameterError, if patches are too small or none is whole, or none of the sample is usable.
     """
     if patches.width < SIDE:
         raise ParameterError(f"scores need patches of {SIDE} samples or wider, these are {patches.width}")
@@ -59,21 +65,26 @@ def score_surface(
     if not len(pictures):
         raise ParameterError("no patch of this surface is whole: use smaller texels or narrower patches")
     exemplar = encoded(sample)
-    theirs, ours = patch_vectors(exemplar), _vectors(pictures)
+    theirs, ours = patch_vectors(exemplar, usable), _vectors(pictures)
+    if not len(theirs):
+        raise ParameterError(f"no {SIDE}x{SIDE} patch of the sample is usable throughout: widen its mask")
+    queries = fewer(QUERIES, max(len(theirs), len(ours)), most) or QUERIES
     return SurfaceScores(
-        swd=_distance_by_level(exemplar, pictures),
-        coherence=_mean_rms(ours, theirs),
-        completeness=_mean_rms(theirs, ours),
+        swd=_distance_by_level(exemplar, pictures, usable, most),
+        coherence=_mean_rms(ours, theirs, queries),
+        completeness=_mean_rms(theirs, ours, queries),
     )
 
 
-def _distance_by_level(sample: Image, pictures: np.ndarray) -> float:
+def _distance_by_level(sample: Image, pictures: np.ndarray, usable: Usable, most: int | None) -> float:
     """Mean swd over the levels, halving the sample and every picture."""
     distances = []
     for _ in range(LEVELS):
-        distances.append(projected_wasserstein(patch_vectors(sample), _vectors(pictures)))
+        theirs, ours = patch_vectors(sample, usable, most), evenly(_vectors(pictures), most)
+        distances.append(projected_wasserstein(theirs, ours))
         sample, pictures = halve(sample), np.moveaxis(halve(np.moveaxis(pictures, 0, 2)), 2, 0)
-        if min(*sample.shape[:2], pictures.shape[1]) < SIDE:
+        usable = halved(usable)
+        if min(*sample.shape[:2], pictures.shape[1]) < SIDE or not len(patch_places(sample, usable)):
             break
     return 100.0 * float(np.mean(distances))
 
@@ -112,8 +123,8 @@ def _vectors(pictures: np.ndarray) -> Float32[np.ndarray, "patch dim"]:
     return np.ascontiguousarray(vectors[:: max(1, round(len(vectors) / _VECTORS))])
 
 
-def _mean_rms(asking: np.ndarray, asked: np.ndarray) -> float:
-    """Mean RMS (of 255) of about QUERIES patches, evenly spaced in their order, to the nearest other."""
-    step = max(1, len(asking) // QUERIES)
+def _mean_rms(asking: np.ndarray, asked: np.ndarray, queries: int) -> float:
+    """Mean RMS (of 255) of about so many patches, evenly spaced in their order, to the nearest other."""
+    step = max(1, len(asking) // queries)
     found = nearest(np.ascontiguousarray(asking[step // 2 :: step]), asked)
     return 255.0 * float(np.sqrt(found.squared / asking.shape[1], dtype=np.float64).mean())

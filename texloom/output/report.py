@@ -67,6 +67,7 @@ class Account:
     scores: Mapping[str, float] = field(default_factory=dict)
     remark: str = ""  # below the scores
     energy: Sequence[float] = ()
+    plots: Mapping[str, str] = field(default_factory=dict)  # further ones, as inline SVG by heading
     seconds: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -86,6 +87,7 @@ def report_html(account: Account) -> str:
         body.append(_section("Scores", _scores(account.scores) + _soft(account.remark)))
     if account.energy:
         body.append(_section("Energy", line_plot(account.energy, across="pass")))
+    body += [_section(heading, plot) for heading, plot in account.plots.items()]
     if account.seconds:
         body.append(_section("Seconds", bar_plot(account.seconds, unit="s")))
     rows = [_row(name, value) for name, value in account.settings.items()]

@@ -1,5 +1,6 @@
 """Where in the exemplar does a partly known patch fit? Coarse candidates by matrix product, then texel by texel."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -8,6 +9,7 @@ from jaxtyping import Bool, Float32, Int32
 
 from texloom.arrays import Image, fours
 from texloom.exemplar.blas import over_blocks
+from texloom.exemplar.patches import whole_squares
 from texloom.kernels.launch import launch
 from texloom.kernels.patches import refine_anchors
 
@@ -35,10 +37,7 @@ class BlockSearch:
         rows, columns = (size - self.width + 1 for size in self.image.shape[:2])
         if self.mask is None:
             return np.ones((rows, columns), np.uint8)
-        holes = np.pad(np.cumsum(np.cumsum(~self.mask, 0), 1), ((1, 0), (1, 0)))
-        w = self.width
-        inside = holes[w:, w:] - holes[:-w, w:] - holes[w:, :-w] + holes[:-w, :-w]
-        return (inside == 0).astype(np.uint8)
+        return whole_squares(self.mask, self.width).astype(np.uint8)
 
     @cached_property
     def anchors(self) -> Int32[np.ndarray, "candidate 2"]:
@@ -108,3 +107,34 @@ def _average(image: Image, step: int) -> Float32[np.ndarray, "cell_row cell_colu
     """Means of ``step × step`` texels; an incomplete last row or column is left out."""
     rows, columns = image.shape[0] // step, image.shape[1] // step
     return image[: rows * step, : columns * step].reshape(rows, step, columns, step, -1).mean((1, 3))
+
+
+def roomy(searches: Iterable[BlockSearch]) -> BlockSearch | None:
+    """The first whose blocks begin at a quarter of the texels that may be used, as many as fit a square twice as wide.
+
+    Else the first that has any block; None if none has. Around a hole that leaves a narrow frame, wide blocks would be
+    few.
+    """
+    some = None
+    for search in searches:
+        if len(search.anchors):
+            some = some or search
+            if search.mask is None or search.usable.sum() >= search.mask.sum() / 4:
+                return search
+    return some
+
+
+def readable(mask: Bool[np.ndarray, "row column"] | None) -> Bool[np.ndarray, "row column"] | None:
+    """Texels that may be used, and those of holes at most two wide: a block may be compared across a scratch.
+
+    Never to be shown: that is what the mask itself tells.
+    """
+    if mask is None:
+        return None
+    grown = np.pad(mask, 1, mode="edge")
+    for axis in (0, 1):
+        grown = grown | np.roll(grown, 1, axis) | np.roll(grown, -1, axis)
+    grown = np.pad(grown[1:-1, 1:-1], 1, mode="edge")
+    for axis in (0, 1):
+        grown = grown & np.roll(grown, 1, axis) & np.roll(grown, -1, axis)
+    return grown[1:-1, 1:-1]

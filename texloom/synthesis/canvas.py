@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float32, Int32
+from jaxtyping import Bool, Float32, Int32
 
 from texloom.arrays import Image
 from texloom.domain.domain import Domain
@@ -33,15 +33,42 @@ class Canvas:
             np.zeros(count, np.float32),
         )
 
-    def close(self, domain: Domain, image: Image) -> None:
-        """Continue the texture over sites that no patch reached."""
+    def bare(self, sites: Bool[np.ndarray, "site"] | None = None) -> Bool[np.ndarray, "site"]:
+        """The sites (None: of all) that show nothing yet."""
         bare = self.label < 0
-        fill_gaps(domain, ~bare, self.position, self.turn, image.shape[:2])
+        return bare if sites is None else bare & sites
+
+    @property
+    def next_label(self) -> int:
+        """The first label that no site has, nor a lower one without."""
+        return int(self.label.max(initial=-1)) + 1
+
+    def close(
+        self,
+        domain: Domain,
+        image: Image,
+        usable: Bool[np.ndarray, "row column"] | None = None,
+        sites: Bool[np.ndarray, "site"] | None = None,
+    ) -> None:
+        """Continue the texture over ``sites`` (None: all) that no patch reached, where it is ``usable`` (None: all)."""
+        bare = self.bare(sites)
+        fill_gaps(domain, self.label >= 0, self.position, self.turn, image.shape[:2], sites)
         texel = np.rint(self.position[bare]).astype(np.int32)
+        if usable is not None and not usable[texel[:, 0], texel[:, 1]].all():
+            texel = nearest_usable(texel, usable)
+            self.position[bare] = texel
         self.colour[bare] = image[texel[:, 0], texel[:, 1]]
-        self.label[bare] = np.iinfo(np.int32).max  # a patch of its own, so that correction visits its border
+        self.label[bare] = self.next_label  # a patch of its own, so that correction visits its border
 
     def sources(self) -> SourceMap:
         """One source a site."""
         turn = self.turn[:, None] if self.turn.any() else None
         return SourceMap(self.position[:, None], np.ones((len(self.position), 1), np.float32), turn)
+
+
+def nearest_usable(texel: Int32[np.ndarray, "n 2"], usable: Bool[np.ndarray, "row column"]) -> Int32[np.ndarray, "n 2"]:
+    """The usable texel nearest to each."""
+    from scipy.ndimage import distance_transform_edt
+
+    row, column = np.asarray(distance_transform_edt(~usable, return_distances=False, return_indices=True))
+    return np.stack([axis[texel[:, 0], texel[:, 1]] for axis in (row, column)], 1).astype(np.int32)

@@ -12,15 +12,18 @@ def fill_gaps(
     position: Float32[np.ndarray, "site 2"],
     turn: Float32[np.ndarray, "site"],
     shape: tuple[int, int],
+    sites: Bool[np.ndarray, "site"] | None = None,
 ) -> None:
-    """Give every unknown site the source of the nearest known one beside it, moved by the offset; outwards, in place.
+    """Give every unknown site of ``sites`` (None: of all) the source of the nearest known one beside it.
+
+    It is moved by the offset between them; outwards from what is known, in place.
 
     Positions stay within an exemplar of ``shape``: at its border they stand still.
 
     Parts of the domain where nothing is known keep what they have.
     """
     known = known.copy()
-    missing = np.flatnonzero(~known).astype(np.int32)
+    missing = np.flatnonzero(~known if sites is None else ~known & sites).astype(np.int32)
     while len(missing):
         around = domain.neighbourhoods(missing, 1)
         usable = (around.sites >= 0) & known[around.sites]

@@ -205,14 +205,23 @@ def known_or_new(known: Analysis | None, exemplar: Exemplar, *, levels: int, dim
 
 def check_room(exemplar: Exemplar, schedule: Sequence[Stage]) -> None:
     """Raises: ExemplarError, unless the patches of all stages fit into the exemplar's levels."""
-    side = min(exemplar.shape)
+    side = exemplar.least_side
     for stage in schedule:
         if -(-side // stage.step) < stage.width:
-            rows, columns = exemplar.shape
             raise ExemplarError(
-                f"the exemplar is {columns}x{rows} texels, but a patch needs {stage.extent}x{stage.extent}: "
+                f"{_room(exemplar)}, but a patch needs {stage.extent}x{stage.extent}: "
                 "use smaller patches or a larger sample"
             )
+
+
+def _room(exemplar: Exemplar) -> str:
+    """What there is to use, in words."""
+    if exemplar.parts:
+        return f"the smallest of {len(exemplar.parts)} samples is {exemplar.least_side} texels across where it is used"
+    size = f"{exemplar.shape[1]}x{exemplar.shape[0]} texels"
+    if exemplar.least_side < min(exemplar.shape):
+        return f"the exemplar is {size}, {exemplar.least_side} across where its mask allows"
+    return f"the exemplar is {size}"
 
 
 def lay(domain: Domain, extent: int, seed: int) -> Patches:

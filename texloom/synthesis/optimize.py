@@ -4,19 +4,21 @@ import time
 from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import Int32, UInt8
+from jaxtyping import Bool
 
-from texloom.arrays import Image, in_fours
+from texloom.arrays import Image
 from texloom.domain.domain import Domain
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Exemplar
-from texloom.exemplar.features import match_image
-from texloom.exemplar.similarity import most_alike
 from texloom.progress import Report
-from texloom.search.blocks import BlockSearch
+from texloom.synthesis import growth
+from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.correction import Correction, near_borders
+from texloom.synthesis.growth import Grown
 from texloom.synthesis.patches import PatchSampling
 from texloom.synthesis.result import Result
+
+_BESIDE = 3  # the most beside what was known: seams are cheapest already, wider neighbourhoods would smooth them over
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +31,7 @@ class Optimize:
     """
 
     start: PatchSampling = field(default_factory=PatchSampling)
-    width: int = 5  # texels per side of the neighbourhoods compared, odd
+    width: int = 5  # texels per side of the neighbourhoods compared, odd; 3 at most where a canvas is continued
     alike: int = 0  # k of k-coherence: alike texels tried too; 2 lowers the energy by a tenth and doubles the time
     passes: int = 4  # the later ones visit only what changed
     reach: int = 4  # steps from the blocks' borders that are corrected
@@ -42,31 +44,29 @@ class Optimize:
 
     def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
         """Cover the domain with blocks, then correct their borders; see ``synthesize``."""
+        return growth.run(self, exemplar, domain, seed=seed, report=report)
+
+    def grow(
+        self,
+        canvas: Canvas,
+        exemplar: Exemplar,
+        image: Image,
+        domain: Domain,
+        *,
+        sites: Bool[np.ndarray, "site"] | None = None,
+        seed: int,
+        report: Report,
+    ) -> Grown:
+        """Blocks over what is bare, then correction near all borders, those of what was known included."""
+        width = self.width if (canvas.label < 0).all() else min(self.width, _BESIDE)
+        laid = self.start.grow(canvas, exemplar, image, domain, sites=sites, seed=seed, report=report)
         clock = [time.perf_counter()]
-        image = in_fours(match_image(exemplar))
-        similar = self._similar(image, exemplar)
+        correction = Correction.of(exemplar, image, reach=width // 2, alike=self.alike)
         clock.append(time.perf_counter())
-        canvas, count, seconds = self.start.lay(exemplar, image, domain, seed=seed, report=report)
+        near = near_borders(canvas, domain, self.reach)
+        visited = np.flatnonzero(near if sites is None else near & sites).astype(np.int32)
+        energy = correction.run(canvas, domain, visited, passes=self.passes, seed=seed, report=report)
         clock.append(time.perf_counter())
-        correction = Correction(image, self._usable(image, exemplar), similar, self.width // 2)
-        sites = np.flatnonzero(near_borders(canvas, domain, self.reach)).astype(np.int32)
-        energy = correction.run(canvas, domain, sites, passes=self.passes, seed=seed, report=report)
-        clock.append(time.perf_counter())
-        analysis, laying, correcting = np.diff(clock).tolist()
-        seconds |= {"analysis": analysis, "blocks": laying - seconds["patches"], "correction": correcting}
-        return Result(canvas.sources(), tuple(energy), seconds, "passes", count)
-
-    def _similar(self, image: Image, exemplar: Exemplar) -> Int32[np.ndarray, "row column k 2"]:
-        """The k-coherence candidates of every texel; none where k is 0."""
-        if self.alike == 0:
-            return np.zeros((*image.shape[:2], 0, 2), np.int32)
-        return most_alike(image, self.alike, usable=exemplar.mask)
-
-    def _usable(self, image: np.ndarray, exemplar: Exemplar) -> UInt8[np.ndarray, "row column"]:
-        """Texels around which a whole neighbourhood, and one texel more for fractions, lies in the exemplar."""
-        reach = self.width // 2
-        usable = np.zeros(image.shape[:2], np.uint8)
-        if min(image.shape[:2]) > self.width:
-            inner = BlockSearch(image, self.width + 1, exemplar.mask).usable
-            usable[reach : reach + inner.shape[0], reach : reach + inner.shape[1]] = inner
-        return usable
+        analysis, correcting = np.diff(clock).tolist()
+        seconds = laid.seconds | {"analysis": analysis, "correction": correcting}
+        return Grown(tuple(energy), seconds, "passes", laid.patches)

@@ -25,15 +25,17 @@ class Pasting:
     site: Int32[np.ndarray, "entry"]
     position: Float32[np.ndarray, "entry 2"]
     turn: Float32[np.ndarray, "entry_or_1"]
+    first: int = 0  # label of what patch 0 shows
 
     @staticmethod
-    def of(patches: Patches) -> "Pasting":
-        """O(entry) time; made once for patches that are pasted batch by batch."""
-        start, entries = group_by_site(patches.cover_patch, patches.count)
+    def of(patches: Patches, sites: Bool[np.ndarray, "site"] | None = None, *, first: int = 0) -> "Pasting":
+        """O(entry) time; made once for patches that are pasted batch by batch. Only ``sites`` are ever written."""
         count = len(patches.cover_start) - 1
         site = np.repeat(np.arange(count, dtype=np.int32), np.diff(patches.cover_start))
+        owner = patches.cover_patch if sites is None else np.where(sites[site], patches.cover_patch, np.int32(-1))
+        start, entries = group_by_site(owner, patches.count)
         turn = np.zeros(1, np.float32) if patches.cover_turn is None else patches.cover_turn[entries]
-        return Pasting(patches, start, site[entries], patches.cover_position[entries], turn)
+        return Pasting(patches, start, site[entries], patches.cover_position[entries], turn, first)
 
     def own(self, chosen: Int32[np.ndarray, "chosen"]) -> tuple[Int32[np.ndarray, "own"], Int32[np.ndarray, "own"]]:
         """Entries of the chosen patches one after the other, and which of the patches each belongs to."""
@@ -66,7 +68,7 @@ class Pasting:
             len(pasted),
             inputs=[
                 *(*own, self.site, self.position, self.turn),
-                *(chosen, anchors, scale, patches.width, place, seam, fours(image)),
+                *(chosen, anchors, scale, patches.width, place, seam, fours(image), self.first),
             ],
             outputs=[canvas.label, canvas.position, canvas.turn, fours(canvas.colour), pasted],
             grain=5000,

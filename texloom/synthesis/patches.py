@@ -5,27 +5,32 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from jaxtyping import Int32
+from jaxtyping import Bool, Int32
 
 from texloom import draws
-from texloom.arrays import Image, in_fours
+from texloom.arrays import Image
 from texloom.domain.domain import Domain
 from texloom.domain.patches import Patches
+from texloom.domain.steps import steps_from, within
 from texloom.errors import ExemplarError, ParameterError
 from texloom.exemplar.exemplar import Exemplar
-from texloom.exemplar.features import match_image
 from texloom.progress import Report
-from texloom.search.blocks import BlockSearch
+from texloom.search.blocks import BlockSearch, roomy
+from texloom.synthesis import growth
 from texloom.synthesis.blocks import BlockGrowth
 from texloom.synthesis.canvas import Canvas
+from texloom.synthesis.continuing import WIDTH, Across, Continuing
+from texloom.synthesis.expansion import Expansion
+from texloom.synthesis.growth import Grown
 from texloom.synthesis.result import Result
-from texloom.synthesis.schedule import batches, breadth_first, overlaps
+from texloom.synthesis.schedule import batches, breadth_first, inwards, overlaps, touching
 from texloom.synthesis.seams import ring
 
 Order = Literal["scan", "breadth-first", "random"]
 
 _STEP = 4  # texels; patches are a whole number of steps wide
 _LARGE = 384  # texels: samples with this shorter side or more are searched in double steps first
+_THIN = 2  # steps from what is known: bare sites no farther need no block
 _LARGEST = 64  # texels: larger blocks would show as copies
 
 
@@ -55,53 +60,112 @@ class PatchSampling:
 
     def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
         """Cover the domain once; see ``synthesize``."""
-        start = time.perf_counter()
-        canvas, count, seconds = self.lay(exemplar, in_fours(match_image(exemplar)), domain, seed=seed, report=report)
-        seconds["blocks"] = time.perf_counter() - start - sum(seconds.values())
-        return Result(canvas.sources(), seconds=seconds, patches=count)
+        return growth.run(self, exemplar, domain, seed=seed, report=report)
+
+    def grow(
+        self,
+        canvas: Canvas,
+        exemplar: Exemplar,
+        image: Image,
+        domain: Domain,
+        *,
+        sites: Bool[np.ndarray, "site"] | None = None,
+        seed: int,
+        report: Report,
+    ) -> Grown:
+        """Blocks over all that is bare, inwards from what is known, then cheaper ones at its border; see ``Grower``."""
+        bare, known = canvas.bare(sites), canvas.label >= 0
+        if not bare.any():
+            return Grown()
+        clock = [time.perf_counter()]
+        continuing, deep = None, bare
+        if known.any():
+            width = min(WIDTH, self.width_for(exemplar))
+            steps = steps_from(domain, known, width)
+            deep = bare & (steps > _THIN)  # what is as thin as a scratch is closed from its sides
+            across = Across(domain, bare, int(steps[bare].max()))
+            continuing = Continuing.of(canvas, image, exemplar.mask, across, width=width, seed=seed)
+        clock.append(time.perf_counter())
+        count, tracing = self.lay(canvas, exemplar, image, domain, deep, sites, seed=seed, report=report)
+        canvas.close(domain, image, exemplar.mask, sites)
+        clock.append(time.perf_counter())
+        if continuing is not None:
+            expansion = Expansion(canvas, image, exemplar.usable, domain, bare)
+            continuing.take_over(expansion, canvas.next_label, report)
+        clock.append(time.perf_counter())
+        matching, laying, cutting = np.diff(clock).tolist()
+        seconds = {"patches": tracing, "blocks": laying - tracing}
+        return Grown(seconds=seconds if continuing is None else seconds | {"seams": matching + cutting}, patches=count)
 
     def lay(
-        self, exemplar: Exemplar, image: Image, domain: Domain, *, seed: int, report: Report
-    ) -> tuple[Canvas, int, dict[str, float]]:
-        """The canvas covered with blocks, how many, and the seconds that preparing the patches took."""
+        self,
+        canvas: Canvas,
+        exemplar: Exemplar,
+        image: Image,
+        domain: Domain,
+        bare: Bool[np.ndarray, "site"],
+        sites: Bool[np.ndarray, "site"] | None,
+        *,
+        seed: int,
+        report: Report,
+    ) -> tuple[int, float]:
+        """Blocks over every patch that touches a bare site; how many, and the seconds that preparing patches took."""
+        if not bare.any():
+            return 0, 0.0
         search = self.search_for(exemplar, image)
-        width = search.width
-        depth = max(2, round(self.overlap * width))
+        depth = max(2, round(self.overlap * search.width))
         start = time.perf_counter()
-        patches = domain.patches(domain.centres(width - depth, seed), width)
-        shared = overlaps(patches)
-        groups = batches(self.ordered(patches, shared, seed), shared)
-        seconds = {"patches": time.perf_counter() - start}
-        canvas = Canvas.empty(domain.count, image.shape[2])
-        growth = BlockGrowth(patches, search, ring(width, depth), domain.area, self.balance, seed)
-        growth.run(canvas, groups, report)
-        canvas.close(domain, image)
-        return canvas, patches.count, seconds
+        patches = self.patches(domain, bare, search.width, depth, seed)
+        laid = touching(patches, bare)
+        groups = self.groups(patches, laid, canvas.label >= 0, seed)
+        spent = time.perf_counter() - start
+        seams = ring(search.width, depth)
+        blocks = BlockGrowth(patches, search, seams, domain.area, self.balance, seed, sites, exemplar.parts)
+        blocks.run(canvas, groups, report)
+        return len(laid), spent
+
+    def patches(self, domain: Domain, bare: Bool[np.ndarray, "site"], width: int, depth: int, seed: int) -> Patches:
+        """The domain's even patches, those that can touch a bare site at least: tracing them is what costs."""
+        centres = domain.centres(width - depth, seed)
+        if not bare.all():
+            # A patch reaches its width along both axes together; edges of a mesh may be half a texel long.
+            centres = centres[within(domain, bare, 2 * width)[centres]]
+        return domain.patches(centres, width)
+
+    def groups(
+        self, patches: Patches, laid: Int32[np.ndarray, "laid"], known: Bool[np.ndarray, "site"], seed: int
+    ) -> list[Int32[np.ndarray, "_"]]:
+        """The patches laid, in batches."""
+        shared = overlaps(patches)[np.ix_(laid, laid)]
+        order = inwards(patches, known, laid, seed) if known.any() else self.ordered(shared, seed)
+        return [laid[group] for group in batches(order, shared)]
 
     def search_for(self, exemplar: Exemplar, image: Image) -> BlockSearch:
         """The search among blocks; narrower ones than the sample's size suggests where its mask holds no such block.
 
         Raises: ExemplarError, if the mask holds no block of the width asked for, or none at all.
         """
-        for width in range(self.width_for(exemplar), 2 * _STEP - 1, -_STEP):
-            step = 2 * _STEP if min(exemplar.shape) >= _LARGE and width % (2 * _STEP) == 0 else _STEP
-            search = BlockSearch(image, width, exemplar.mask, step=step)
-            if len(search.anchors):
-                return search
-            if self.patch is not None:
-                raise ExemplarError(f"no {width}x{width} block lies inside the mask: lower patch, or widen the mask")
-        raise ExemplarError(f"no {2 * _STEP}x{2 * _STEP} block lies inside the mask: widen the mask")
+        widest, large = self.width_for(exemplar), exemplar.least_side >= _LARGE
+        narrowest = 2 * _STEP if self.patch is None else widest
+        widths = range(widest, narrowest - 1, -_STEP)
+        doubled = [large and width % (2 * _STEP) == 0 for width in widths]
+        sizes = zip(widths, doubled, strict=True)
+        search = roomy(BlockSearch(image, width, exemplar.mask, step=_STEP * (1 + twice)) for width, twice in sizes)
+        if search is not None:
+            return search
+        remedy = "widen the mask" if self.patch is None else "lower patch, or widen the mask"
+        raise ExemplarError(f"no {narrowest}x{narrowest} block lies inside the mask: {remedy}")
 
     def width_for(self, exemplar: Exemplar) -> int:
         """Texels a side: as asked, or by the sample's size; never more than half of it, in whole steps."""
-        side = min(exemplar.shape)
+        side = exemplar.least_side
         wanted = self.patch if self.patch is not None else min(max(side // 4, 16), _LARGEST)
         return max(2 * _STEP, min(wanted, side // 2 if side >= 4 * _STEP else side) // _STEP * _STEP)
 
-    def ordered(self, patches: Patches, shared: np.ndarray, seed: int) -> Int32[np.ndarray, "patch"]:
-        """The order of laying."""
+    def ordered(self, shared: Bool[np.ndarray, "patch patch"], seed: int) -> Int32[np.ndarray, "patch"]:
+        """The order of laying where nothing is known."""
         if self.order == "random":
-            return draws.permutation(seed, count=patches.count).astype(np.int32)
+            return draws.permutation(seed, count=len(shared)).astype(np.int32)
         if self.order == "breadth-first":
             return breadth_first(shared, seed)
-        return np.arange(patches.count, dtype=np.int32)
+        return np.arange(len(shared), dtype=np.int32)

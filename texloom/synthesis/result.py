@@ -7,10 +7,15 @@ from texloom.sources import SourceMap
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """``energy`` is the mean squared difference per pass (encoded colour units), ``seconds`` the time by stage."""
+    """How a synthesis went beside what it made.
+
+    ``energy`` is the mean squared difference per pass (encoded colour units), ``curves`` what else a method counts per
+    pass, by name and unit as a reader meets it ("changed pixels"), ``seconds`` the time by stage.
+    """
 
     sources: SourceMap
     energy: tuple[float, ...] = ()
     seconds: dict[str, float] = field(default_factory=dict)
     stopped: str = "done"
     patches: int = 0
+    curves: dict[str, tuple[float, ...]] = field(default_factory=dict)

@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Int32
 
 from texloom import draws
+from texloom.domain.cover import group_by_site, ranges
 from texloom.domain.patches import Patches
 
 _TIES = 0x71E5  # purpose of the draws that order equals
@@ -45,3 +46,36 @@ def breadth_first(shared: Bool[np.ndarray, "patch patch"], seed: int) -> Int32[n
             order.append(front[np.argsort(rank[front])])
             front = np.flatnonzero(shared[front].any(0) & left)
     return np.concatenate(order).astype(np.int32)
+
+
+def touching(patches: Patches, sites: Bool[np.ndarray, "site"]) -> Int32[np.ndarray, "patch"]:
+    """Patches that lie over any of ``sites``."""
+    touched = np.zeros(patches.count, bool)
+    touched[patches.cover_patch[ranges(patches.cover_start, np.flatnonzero(sites))]] = True
+    return np.flatnonzero(touched).astype(np.int32)
+
+
+def inwards(
+    patches: Patches, known: Bool[np.ndarray, "site"], laid: Int32[np.ndarray, "laid"], seed: int
+) -> Int32[np.ndarray, "laid"]:
+    """The order that lays next, of ``laid``, the patch of which the largest share is known or laid; indices into it.
+
+    Equals come in random order. O(laid² + entry) time.
+    """
+    start, entries = group_by_site(patches.cover_patch, patches.count)
+    site = np.repeat(np.arange(len(known), dtype=np.int32), np.diff(patches.cover_start))[entries]
+    size = np.maximum(np.diff(start), 1)
+    context = np.bincount(patches.cover_patch[entries], weights=known[site], minlength=patches.count)
+    known = known.copy()
+    waiting = draws.permutation(seed, _TIES, count=len(laid))
+    order = np.empty(len(laid), np.int32)
+    for step in range(len(laid)):
+        candidates = laid[waiting]
+        best = int((context[candidates] / size[candidates]).argmax())
+        order[step] = waiting[best]
+        own = site[slice(*start[candidates[best] : candidates[best] + 2].tolist())]
+        fresh = own[~known[own]]
+        known[fresh] = True
+        context += np.bincount(patches.cover_patch[ranges(patches.cover_start, fresh)], minlength=patches.count)
+        waiting = np.delete(waiting, best)
+    return order

@@ -3,7 +3,11 @@
 import numpy as np
 from jaxtyping import Float32
 
+from texloom.exemplar.exemplar import Part
 from texloom.search.blocks import BlockSearch
+
+SOON = 0.3
+"""Times the sample is taken to have been shown at least: chance should not weigh while there is little to share."""
 
 
 class Usage:
@@ -24,14 +28,18 @@ class Usage:
         flat = cell[:, 0] * self._shape[1] + cell[:, 1]
         self._shown += np.bincount(flat, weights=area, minlength=self._shown.size).reshape(self._shape)
 
+    def shown(self, part: Part) -> float:
+        """Texels of output that show the part; a cell that it ends in holds nothing else."""
+        rows, columns = (slice(s.start // self._step, -(-s.stop // self._step)) for s in part.slices)
+        return float(self._shown[rows, columns].sum())
+
     def excess(self) -> Float32[np.ndarray, "candidate"]:
         """Mean use of each candidate block over that of all usable texels: 1 is its fair share, 0 unused.
 
-        Until about a third of the sample has been shown once, the share is taken as if it had been: chance should not
-        weigh while there is little to share.
+        Until about a third of the sample has been shown once, the share is taken as if it had been.
         """
         total = np.pad(self._shown.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
         r, c, n = self._candidates[:, 0], self._candidates[:, 1], self._cells
         block = total[r + n, c + n] - total[r, c + n] - total[r + n, c] + total[r, c]
-        fair = max(self._shown.mean() / self._usable, 0.3 * self._step**2)
+        fair = max(self._shown.mean() / self._usable, SOON * self._step**2)
         return (block / (n * n * fair)).astype(np.float32)

@@ -1,0 +1,71 @@
+"""Growing texture on a canvas that may hold some already: what fills, fusions and whole results have in common."""
+
+import time
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+import numpy as np
+from jaxtyping import Bool
+
+from texloom.arrays import Image, in_fours
+from texloom.domain.domain import Domain
+from texloom.exemplar.exemplar import Exemplar
+from texloom.exemplar.features import match_image
+from texloom.progress import Report
+from texloom.synthesis.canvas import Canvas
+from texloom.synthesis.result import Result
+
+
+@dataclass(frozen=True, eq=False)
+class Grown:
+    """How it went: ``energy`` by pass (squared encoded colour units), ``seconds`` by stage, number of patches laid."""
+
+    energy: tuple[float, ...] = ()
+    seconds: dict[str, float] = field(default_factory=dict)
+    stopped: str = "done"
+    patches: int = 0
+    curves: dict[str, tuple[float, ...]] = field(default_factory=dict)  # by name, a value a pass
+
+
+class Grower(Protocol):
+    """A method that can continue what a canvas shows."""
+
+    def grow(
+        self,
+        canvas: Canvas,
+        exemplar: Exemplar,
+        image: Image,
+        domain: Domain,
+        *,
+        sites: Bool[np.ndarray, "site"] | None = None,
+        seed: int,
+        report: Report,
+    ) -> Grown:
+        """Colour every bare site of ``sites`` (None: of all), in place; what is known is matched, and stays.
+
+        ``image`` is ``in_fours(match_image(exemplar))``, made once where several calls differ in their masks only;
+        ``exemplar.mask`` tells the texels that may be used. Sites outside ``sites`` are never written.
+
+        Raises: ExemplarError, if the mask is too small for the method.
+        """
+        ...
+
+
+def run(method: Grower, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
+    """The whole domain, from a bare canvas."""
+    start = time.perf_counter()
+    image = in_fours(match_image(exemplar))
+    seconds = {"analysis": time.perf_counter() - start}
+    canvas = Canvas.empty(domain.count, image.shape[2])
+    grown = method.grow(canvas, exemplar, image, domain, seed=seed, report=report)
+    return result_of(canvas, replace(grown, seconds=added(seconds, grown.seconds)))
+
+
+def result_of(canvas: Canvas, grown: Grown) -> Result:
+    """What the canvas shows at the end, and how it went."""
+    return Result(canvas.sources(), grown.energy, grown.seconds, grown.stopped, grown.patches, grown.curves)
+
+
+def added(first: dict[str, float], second: dict[str, float]) -> dict[str, float]:
+    """Seconds by stage, stages of the same name added up."""
+    return first | {name: first.get(name, 0.0) + value for name, value in second.items()}
