@@ -56,5 +56,5 @@ class Domain(Protocol):
         ...
 
     def neighbourhoods(self, sites: Int32[np.ndarray, "n"], reach: int) -> Neighbourhoods:
-        """Sites at most ``reach`` texels (rows and columns) from each given one: all near ones, ever fewer far ones."""
+        """The sites at most ``reach`` texels (rows and columns) from each given one."""
         ...

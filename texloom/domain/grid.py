@@ -9,7 +9,7 @@ from jaxtyping import Complex64, Float, Float32, Float64, Int32
 from texloom import draws
 from texloom.domain.cover import group_by_site
 from texloom.domain.domain import Lattice
-from texloom.domain.neighbourhoods import NEAR, Neighbourhoods, stencil
+from texloom.domain.neighbourhoods import Neighbourhoods, square
 from texloom.domain.network import lay_patches
 from texloom.domain.patches import Patches
 from texloom.domain.scatter import scatter
@@ -141,11 +141,8 @@ class Grid:
         return self.flow.power
 
     def neighbourhoods(self, sites: Int32[np.ndarray, "n"], reach: int) -> Neighbourhoods:
-        """Squares of ``2 reach + 1`` texels a side, thinned where they are wide, the middle first; -1 outside a plane.
-
-        Along a field they are small: frames turn with the distance.
-        """
-        steps = stencil(reach if self.field is None else min(reach, NEAR))
+        """Squares of ``2 reach + 1`` texels a side, the middle one first; -1 outside a plane."""
+        steps = square(reach)
         row, column = np.divmod(sites[:, None], np.int32(self.columns))
         row, column = row + steps[:, 0], column + steps[:, 1]
         if self.wrap:

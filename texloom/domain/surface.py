@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Complex64, Float, Float32, Float64, Int32
 
-from texloom.domain.neighbourhoods import NEAR, Neighbourhoods
+from texloom.domain.neighbourhoods import Neighbourhoods
 from texloom.domain.network import lay_patches
 from texloom.domain.patches import Patches
 from texloom.domain.scatter import scatter, site_neighbours
@@ -126,7 +126,6 @@ class Surface:
 
     def neighbourhoods(self, sites: Int32[np.ndarray, "n"], reach: int) -> Neighbourhoods:
         """Sites nearby by walking along edges, laid into the tangent plane; the nearest where there are many."""
-        reach = min(reach, NEAR)
         most = (2 * reach + 1) ** 2
         shape = (len(sites), most)
         found, offset = np.empty(shape, np.int32), np.empty((*shape, 2), np.float32)

@@ -9,7 +9,7 @@ from texloom import draws
 from texloom.arrays import Image
 from texloom.domain.domain import Domain
 from texloom.domain.steps import within
-from texloom.exemplar.exemplar import LEAST_SIDE
+from texloom.exemplar.exemplar import LEAST_SIDE, Exemplar
 from texloom.progress import Report
 from texloom.search.blocks import BlockSearch, readable, roomy
 from texloom.synthesis.canvas import Canvas
@@ -21,6 +21,8 @@ from texloom.synthesis.schedule import batches, overlaps, touching
 WIDTH = 24  # texels: of the patches matched across the border; wider ones would ask for what is not in the sample
 _TOP = 4  # best blocks of each that are proposed
 _MANY = 400  # patches: of more, half as many blocks are, which bring nine tenths of what all would
+_WIDEST = 96  # texels: of the patches matched over what has been laid, a third of the sample where that is less
+_RIM = 2  # texels: how far beyond such a patch its block may take over
 _PITCH = 0.5  # of the width: how far such patches are apart
 _CONTEXT = 0.15  # of a patch: the least that must be known
 _CHANCE = 0.5  # how much worse a block may fit by chance, so that another seed is another try
@@ -47,6 +49,15 @@ class Continuing:
     groups: list[Int32[np.ndarray, "_"]]  # best matches first; the blocks of one group do not touch
 
     @staticmethod
+    def everywhere(
+        canvas: Canvas, image: Image, exemplar: Exemplar, domain: Domain, sites: Bool[np.ndarray, "site"], seed: int
+    ) -> "Continuing | None":
+        """Patches over all that has been laid: what is seen at one side of a seam is continued across it."""
+        width = max(min(exemplar.least_side // 3, _WIDEST), LEAST_SIDE) // 4 * 4
+        across = Across(domain, sites, _RIM)
+        return Continuing.of(canvas, image, exemplar.mask, across, width=width, seed=seed, top=_TOP // 2)
+
+    @staticmethod
     def of(
         canvas: Canvas,
         image: Image,
@@ -55,8 +66,11 @@ class Continuing:
         *,
         width: int,
         seed: int,
+        top: int = _TOP,
     ) -> "Continuing | None":
         """Patches of ``width`` (narrower if the mask has no room for them) lain half over each other, and matched.
+
+        The ``top`` best blocks of each are proposed.
 
         None where the mask holds no block at all, or too little is known.
         """
@@ -71,7 +85,7 @@ class Continuing:
         enough = known.mean(1) >= _CONTEXT
         if not enough.any():
             return None
-        top = _TOP if np.count_nonzero(enough) <= _MANY else _TOP // 2
+        top = top if np.count_nonzero(enough) <= _MANY else min(top, _TOP // 2)
         anchors, cost = _best(search, values[enough], known[enough], top, seed)
         margin = min(across.depth, width) + 1
         wide = domain.patches(patches.centres[touched[enough]], width + 2 * margin)

@@ -14,7 +14,7 @@ from jaxtyping import Bool, Float32, Int32, UInt8
 from texloom import draws
 from texloom.arrays import Image, fours
 from texloom.domain.domain import Domain
-from texloom.domain.neighbourhoods import NEAR, Neighbourhoods
+from texloom.domain.neighbourhoods import Neighbourhoods
 from texloom.domain.steps import within
 from texloom.exemplar.exemplar import Exemplar
 from texloom.exemplar.similarity import most_alike
@@ -40,14 +40,14 @@ class Correction:
 
     @staticmethod
     def of(exemplar: Exemplar, image: Image, *, reach: int, alike: int = 0) -> "Correction":
-        """Candidates are the texels around which the near part of a neighbourhood lies in the exemplar.
+        """Candidates are the texels around which a whole neighbourhood lies in the exemplar.
 
         ``alike`` is the k of k-coherence: so many texels like the pixel's own are tried too.
         """
         similar = np.zeros((*image.shape[:2], 0, 2), np.int32)
         if alike:
             similar = most_alike(image, alike, usable=exemplar.mask)
-        return Correction(image, _usable(image, exemplar, min(reach, NEAR)), similar, reach)
+        return Correction(image, _usable(image, exemplar, reach), similar, reach)
 
     def run(
         self, canvas: Canvas, domain: Domain, sites: Int32[np.ndarray, "n"], *, passes: int, seed: int, report: Report

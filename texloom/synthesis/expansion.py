@@ -186,7 +186,7 @@ class _Pairs:
         domain: Domain, canvas: Canvas, sites: Int32[np.ndarray, "n"], number: Int32[np.ndarray, "site"]
     ) -> "_Pairs":
         """Each pair of neighbours that may change once, and each known site near one that may."""
-        around = domain.neighbourhoods(sites, _DEPTH)
+        around = domain.neighbourhoods(sites, _DEPTH if len(sites) < domain.count else 1)
         one = np.broadcast_to(np.arange(len(sites), dtype=np.int32)[:, None], around.sites.shape)
         offset = np.broadcast_to(around.offset, (*around.sites.shape, 2))
         second = np.where(around.sites >= 0, number[around.sites], np.int32(-1))

@@ -47,6 +47,7 @@ class PatchSampling:
     overlap: float = 1 / 3  # of the patch: how far neighbours overlap, and how deep seams may run
     balance: float = 0.4  # typical mismatches a block pays for having had its fair share already
     order: Order = "breadth-first"
+    settle: bool = False  # at the end blocks take over across seams, where all seams together get cheaper
 
     def __post_init__(self) -> None:
         if self.patch is not None and self.patch < 2 * _STEP:
@@ -89,6 +90,8 @@ class PatchSampling:
         count, tracing = self.lay(canvas, exemplar, image, domain, deep, sites, seed=seed, report=report)
         canvas.close(domain, image, exemplar.mask, sites)
         clock.append(time.perf_counter())
+        if self.settle and not known.any():
+            continuing = Continuing.everywhere(canvas, image, exemplar, domain, bare, seed)
         if continuing is not None:
             expansion = Expansion(canvas, image, exemplar.usable, domain, bare)
             continuing.take_over(expansion, canvas.next_label, report)

@@ -34,6 +34,8 @@ from texloom.synthesis.seeds import plant
 Order = Literal["parallel", "scan-line"]
 
 _BLOCK = 0.4  # of the sample's shorter side: the first pass of the parallel order copies blocks this wide
+_NEAR = 3  # texels around a pixel that later passes compare: what is far weighs as much, and tears edges
+_FIRST = 18  # texels around a pixel that the first scan compares one by one; the tree sees the whole window
 _BORDER = 8  # steps from the blocks' borders where refinement may change a pixel
 
 
@@ -45,8 +47,9 @@ class Refine:
     known, later passes compare whole windows, and the search is PCA and a kd-tree. It is a sequence, on images only;
     around what is known, seeds keep a window away from it, and the passes turn through four directions.
     "parallel" does not depend on the order of pixels and works on any domain: the first pass copies windows whole, as
-    blocks, and later passes try what the pixels around suggest (k-coherence, with ``alike`` further texels each). It
-    gives better pictures of most samples in a tenth of the time, so it is the default.
+    blocks, which then take over from each other where that makes seams cheaper; later passes try what the pixels
+    around suggest (k-coherence, with ``alike`` further texels each). It gives better pictures of most samples in a
+    tenth of the time, so it is the default.
 
     Where nothing is known the plane is grown as a torus in scan-line order, as in the paper.
     """
@@ -114,10 +117,10 @@ class Refine:
     def _parallel(self, task: "_Task", window: int) -> Grown:
         """Blocks, then passes in which every pixel tries what its surroundings suggest."""
         canvas, domain, exemplar = task.canvas, task.domain, task.exemplar
-        blocks = PatchSampling(patch=self._block(exemplar, task.image, window))
+        blocks = PatchSampling(patch=self._block(exemplar, task.image, window), settle=True)
         grown = blocks.grow(canvas, exemplar, task.image, domain, sites=task.sites, seed=task.seed, report=task.report)
         start = time.perf_counter()
-        correction = Correction.of(exemplar, task.image, reach=window // 2, alike=self.alike)
+        correction = Correction.of(exemplar, task.image, reach=min(window // 2, _NEAR), alike=self.alike)
         near = np.flatnonzero(near_borders(canvas, domain, _BORDER) & task.sites).astype(np.int32)
         passes = correction.passes(canvas, domain, near, seed=task.seed)
         curve = Convergence(self.difference, self.threshold, task.sites)
@@ -159,7 +162,7 @@ class Refine:
         reach = scan.windows.reach
         for turn in count():
             chosen = task.sites if turn else task.canvas.bare(task.sites)
-            steps = stencil(reach) if turn else square(reach)
+            steps = stencil(reach) if turn else square(min(reach, _FIRST))
             direction = turn % 4 if turning else 0
             for done in scan.run(chosen, steps, axis=direction % 2, backwards=direction > 1):
                 task.report("scan", (turn + done) / self.passes)
