@@ -190,7 +190,7 @@ def scan_pixel(
     """
     distance = ((vectors - query) ** 2).sum(1)
     tried = np.argsort(distance, kind="stable")[:shortlist].tolist()
-    if shortlist > 1:
-        tried += [guess for guess in suggested if guess >= 0]
+    if shortlist > 1:  # what is shown already comes first, so that it stays among equals
+        tried = [guess for guess in suggested[4:] + suggested[:4] if guess >= 0] + tried
     costs = [sum(((image[tuple(centre[c] + step)] - colour) ** 2).sum() for step, colour in around) for c in tried]
     return tried[int(np.argmin(costs))], min(costs) / max(len(around), 1)

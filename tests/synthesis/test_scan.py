@@ -165,10 +165,10 @@ def test_an_empty_canvas_and_nothing_chosen() -> None:
     assert (canvas.label == 0).all()
 
 
-def test_equal_texels_are_taken_by_the_lowest_index() -> None:
+def test_of_equal_texels_the_first_is_taken_then_what_continues_it() -> None:
     image = np.full((20, 20, 3), 0.5, np.float32)
     canvas = Canvas.empty(30, 4)
     list(
         Scan(canvas, in_fours(image), Windows.of(image, 3, 8), Lattice(5, 6, True), 3).run(np.ones(30, bool), square(3))
     )
-    np.testing.assert_array_equal(canvas.position, np.full((30, 2), 3))
+    np.testing.assert_array_equal(canvas.position[:6], [(3, 3 + column) for column in range(6)])

@@ -184,15 +184,19 @@ def scan_line(
         )
         search_tree(points, index, low, high, first, last, query, 0, found, distance)
 
-        best = int(found[0, 0])
-        least = float(window_cost(exemplar, centre[best, 0], centre[best, 1], stencil, around, colour, far))
-        if found.shape[1] > 1:
-            for k in range(1, found.shape[1] + 9):
+        best = int(-1)
+        least = float(far)
+        if found.shape[1] == 1:
+            best = found[0, 0]
+            least = window_cost(exemplar, centre[best, 0], centre[best, 1], stencil, around, colour, far)
+        else:
+            # What is shown already first: it fits, so that comparing the others ends soon.
+            for k in range(9 + found.shape[1]):
                 guess = int(-1)
-                if k < found.shape[1]:
-                    guess = found[0, k]
+                if k < 9:
+                    guess = suggested[(k + 4) % 9]
                 else:
-                    guess = suggested[k - found.shape[1]]
+                    guess = found[0, k - 9]
                 if guess >= 0 and guess != best:  # neighbours mostly suggest the same
                     total = window_cost(exemplar, centre[guess, 0], centre[guess, 1], stencil, around, colour, least)
                     if total < least:
