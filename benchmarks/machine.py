@@ -5,7 +5,7 @@ import os
 import platform
 from pathlib import Path
 
-_PACKAGES = ("texloom", "numpy", "scipy", "warp-lang", "pillow", "gmic", "resynthesizer")
+_PACKAGES = ("texloom", "numpy", "scipy", "warp-lang", "pillow", "gmic", "resynthesizer", "pypatchmatch")
 
 
 def describe() -> dict[str, str]:

@@ -72,3 +72,13 @@ def test_a_field_needs_the_parallel_order(folder: Path, capsys: Captured) -> Non
 def test_the_papers_method_can_search_in_a_tree(folder: Path, capsys: Captured) -> None:
     words = ["image", folder / "a.png", "-o", folder / "out.png", "--size", "32", "--method", "patches", "--json"]
     assert command.main([str(word) for word in [*words, "--preset", "resampling", "--search", "pca-tree"]]) == 0
+
+
+def test_both_stopping_rules(folder: Path, capsys: Captured) -> None:
+    """Never settled, it makes all its passes; with a threshold above any change, one; a sum exceeds the mean."""
+    words = ["image", folder / "a.png", "-o", folder / "out.png", "--size", 32, "--passes", 4]
+    mean = run([*words, "--threshold", 0], capsys)
+    assert mean["stopped"] == "passes" and len(mean["curves"]["MSE"]) == 4
+    assert run([*words, "--threshold", 10], capsys)["stopped"] == "settled"
+    total = run([*words, "--threshold", 0, "--difference", "sum"], capsys)
+    assert total["curves"]["difference"][0] > 10 * mean["curves"]["difference"][0] > 0

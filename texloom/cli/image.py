@@ -26,6 +26,8 @@ def image(
     window: options.Window = None,
     pitch: options.Pitch = None,
     passes: options.Passes = None,
+    threshold: options.Threshold = None,
+    difference: options.Difference = None,
     analysis: options.AnalysisFile = None,
     mask: options.Mask = None,
     seed: options.Seed = 0,
@@ -38,7 +40,9 @@ def image(
 ) -> None:
     """Grow an image of any size from samples used together; a stack of maps comes out aligned."""
     rows, columns = options.parse_size(size)
-    wanted = methods.wish(method, search, preset, order=order, window=window, pitch=pitch, passes=passes)
+    refining = {"order": order, "window": window, "pitch": pitch, "passes": passes}
+    refining |= {"threshold": threshold, "difference": difference}
+    wanted = methods.wish(method, search, preset, **refining)
     options.check_mask(mask, samples)
     check_analysis(analysis, preset)
     options.check_report(report)

@@ -83,7 +83,7 @@ class MethodWish:
         return replace(papers[task](), **self.refining)
 
 
-def wish(method: str | None, search: str | None, preset: str | None, **refining: str | int | None) -> MethodWish:
+def wish(method: str | None, search: str | None, preset: str | None, **refining: str | float | None) -> MethodWish:
     """The method asked for; ``refining`` are parameters of ``refine``, None where not given.
 
     Without a name it is the preset's first, or the default. Raises: ParameterError, for an unknown name, a search

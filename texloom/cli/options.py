@@ -32,6 +32,12 @@ Order = Annotated[str | None, typer.Option(metavar="NAME", help=f"With refine: {
 Window = Annotated[int | None, typer.Option(metavar="N", help="With refine: texels a side that are compared.")]
 Pitch = Annotated[int | None, typer.Option(metavar="N", help="With refine in scan-line order: texels between seeds.")]
 Passes = Annotated[int | None, typer.Option(metavar="N", help="With refine: passes at most.")]
+Threshold = Annotated[
+    float | None, typer.Option(metavar="E", help="With refine: stop when a pass changes less; 0 never does.")
+]
+Difference = Annotated[
+    str | None, typer.Option(metavar="NAME", help="With refine: what changes is a mean over pixels, or a sum.")
+]
 Seed = Annotated[int, typer.Option(metavar="N", help="Same seed, same pixels.")]
 Device = Annotated[str, typer.Option(metavar="NAME", help="cpu or cuda.")]
 Threads = Annotated[int | None, typer.Option(metavar="N", min=1, max=1024, help="CPU threads; all cores if not given.")]
