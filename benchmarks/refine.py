@@ -12,10 +12,10 @@ from benchmarks import ours, peers, report
 from benchmarks.data import SEED
 from texloom.domain.grid import Grid
 from texloom.exemplar.features import visible
+from texloom.fusion.fuse import fuse
+from texloom.fusion.labels import from_picture
 from texloom.io.stack import read_exemplar
 from texloom.metrics import score
-from texloom.synthesis.fuse import fuse
-from texloom.synthesis.labels import from_picture
 from texloom.synthesis.refine import Refine
 
 SIZE = 384

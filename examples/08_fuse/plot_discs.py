@@ -13,8 +13,8 @@ from texloom import Exemplar, Grid
 from texloom.demo import draw
 from texloom.exemplar.exemplar import to_map
 from texloom.exemplar.scale import dominant_scale
-from texloom.synthesis.fuse import fuse
-from texloom.synthesis.labels import discs, fading
+from texloom.fusion.fuse import fuse
+from texloom.fusion.labels import discs, fading
 
 COLOURS = np.array([(200, 40, 40), (40, 70, 190)], np.uint8)
 

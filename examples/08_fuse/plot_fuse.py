@@ -11,8 +11,8 @@ import numpy as np
 from examples.pictures import Picture, beside, shown
 from texloom import Grid
 from texloom.demo import draw
-from texloom.synthesis.fuse import fuse
-from texloom.synthesis.labels import from_picture
+from texloom.fusion.fuse import fuse
+from texloom.fusion.labels import from_picture
 
 COLOURS = np.array([(200, 40, 40), (40, 70, 190)], np.uint8)
 

@@ -11,8 +11,8 @@ import numpy as np
 import texloom
 from examples.pictures import BACK, FRONT, Picture, beside, coat, coloured
 from texloom.demo import draw, rabbit
-from texloom.synthesis.fuse import fuse
-from texloom.synthesis.labels import from_colours
+from texloom.fusion.fuse import fuse
+from texloom.fusion.labels import from_colours
 
 COLOURS = np.array([(0.8, 0.15, 0.15), (0.15, 0.3, 0.75), (0.25, 0.6, 0.25)])
 NAMES = ("scales", "weave", "knit")

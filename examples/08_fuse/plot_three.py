@@ -11,8 +11,8 @@ import numpy as np
 from examples.pictures import Picture, beside, of_map, shown
 from texloom import Grid, gather_images
 from texloom.demo import draw
-from texloom.synthesis.fuse import fuse
-from texloom.synthesis.labels import from_picture
+from texloom.fusion.fuse import fuse
+from texloom.fusion.labels import from_picture
 
 COLOURS = np.array([(200, 40, 40), (40, 70, 190), (60, 150, 60)], np.uint8)
 NAMES = ("pebbles", "wood", "scales")

@@ -62,10 +62,10 @@ def fuse(
             from texloom.cli.samples import read_each, tell_dropped
             from texloom.domain.grid import Grid
             from texloom.exemplar.join import join
+            from texloom.fusion import fuse as fusion
             from texloom.output.gather import gather_images
             from texloom.output.image import single_map, write_images
             from texloom.output.sources_file import SavedSources, save_sources
-            from texloom.synthesis import fuse as fusion
 
             chosen, belt_method = wanted.grower("fuse"), wanted.belt_method()
             stacks = read_each(samples, directx_normals=directx_normals)

@@ -13,12 +13,12 @@ from texloom.domain.surface import Surface
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Exemplar
 from texloom.exemplar.scale import dominant_scale
+from texloom.fusion import labels as maps
 from texloom.io.image import read_stored
 from texloom.io.mesh import read_mesh
 from texloom.io.vertex_colours import read_vertex_colours
 from texloom.mesh.model import Model
 from texloom.mesh.query import closest_points
-from texloom.synthesis import labels as maps
 
 DISCS, VERTEX = "discs", "vertex"
 _ASTRAY = 0.02  # of the mesh's diagonal: a map farther off is of another mesh

@@ -8,7 +8,7 @@ from texloom.cli.options import METHODS, PRESET_METHODS, PRESETS, SEARCHES, choo
 from texloom.errors import ParameterError
 
 if TYPE_CHECKING:
-    from texloom.synthesis.fuse import BeltMethod
+    from texloom.fusion.fuse import BeltMethod
     from texloom.synthesis.growth import Grower
     from texloom.synthesis.optimize import Optimize
     from texloom.synthesis.patches import PatchSampling

@@ -85,9 +85,9 @@ def surface(
             from texloom.cli.samples import read_each, tell_dropped
             from texloom.domain.surface import Surface, texel_for_repeats
             from texloom.exemplar.join import join
+            from texloom.fusion import fuse as fusion
             from texloom.io.mesh import read_mesh
             from texloom.output.sources_file import SavedSources, save_sources
-            from texloom.synthesis import fuse as fusion
             from texloom.synthesis.synthesize import synthesize
 
             stacks = read_each(samples, mask=mask, directx_normals=directx_normals)

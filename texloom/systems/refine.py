@@ -4,7 +4,7 @@
 2. Windows in a few dimensions, and a kd-tree of them (§3):  ``exemplar.windows.Windows``, ``search.tree.KdTree``
 3. Seed points on a grid (§3, fig. 5):                       ``synthesis.seeds.plant``
 4. Scan-line passes until little changes (§3, eq. 1):        ``refinement``
-5. Texture fusion through belts (§4), maps of discs (§5):    ``fusion``, ``synthesis.labels.discs``
+5. Texture fusion through belts (§4), maps of discs (§5):    ``fusion``, ``fusion.labels.discs``
 6. Holes filled in four scan directions (§5, fig. 12):       ``filling``
 7. Patches with overlaps grown anew (§5, fig. 13):           ``patches``
 
@@ -18,9 +18,9 @@ from jaxtyping import Bool, Int32
 
 from texloom.domain.domain import Domain
 from texloom.exemplar.exemplar import Exemplar
+from texloom.fusion.fuse import Fused, fuse
 from texloom.progress import Report, silent
 from texloom.synthesis.fill import Filled, fill
-from texloom.synthesis.fuse import Fused, fuse
 from texloom.synthesis.refine import Refine
 from texloom.synthesis.refine_patches import RefinePatches
 

@@ -12,12 +12,12 @@ from texloom.domain.grid import Grid
 from texloom.domain.surface import Surface
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Exemplar, from_array
+from texloom.fusion.belts import lay_belts
+from texloom.fusion.borders import cut_border
+from texloom.fusion.fuse import Filling, Fused, fuse
 from texloom.kernels.launch import thread_count, use
 from texloom.output.gather import gather_sites
-from texloom.synthesis.belts import lay_belts
-from texloom.synthesis.borders import cut_border
 from texloom.synthesis.canvas import Canvas
-from texloom.synthesis.fuse import Filling, Fused, fuse
 from texloom.synthesis.optimize import Optimize
 from texloom.synthesis.patches import PatchSampling
 

@@ -24,10 +24,10 @@ from texloom.exemplar.exemplar import Exemplar
 from texloom.exemplar.features import match_image
 from texloom.exemplar.join import Joined, join
 from texloom.exemplar.scale import dominant_scale
+from texloom.fusion.belt_samples import belt_sample
+from texloom.fusion.belts import Belts, lay_belts, pairs_of
+from texloom.fusion.borders import cut_border
 from texloom.progress import Report, silent
-from texloom.synthesis.belt_samples import belt_sample
-from texloom.synthesis.belts import Belts, lay_belts, pairs_of
-from texloom.synthesis.borders import cut_border
 from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.growth import Grower, Grown, added, result_of
 from texloom.synthesis.optimize import Optimize

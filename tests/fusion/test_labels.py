@@ -8,7 +8,7 @@ from scipy.ndimage import label
 
 from tests.data import DATA, needs_data
 from texloom.errors import ParameterError
-from texloom.synthesis import labels
+from texloom.fusion import labels
 
 RED, BLUE, GREEN, PURPLE = (1.0, 0, 0), (0, 0, 1.0), (0, 1.0, 0), (0.5, 0, 0.5)
 

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Int32
 
 from texloom.domain.domain import Domain
-from texloom.synthesis.belts import Belts
+from texloom.fusion.belts import Belts
 from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.cuts import cheapest_cut, seam_costs
 

@@ -11,8 +11,8 @@ from texloom.domain.domain import Domain
 from texloom.domain.grid import Grid
 from texloom.domain.steps import steps_from
 from texloom.exemplar.exemplar import Exemplar
-from texloom.synthesis.belt_samples import belt_sample
-from texloom.synthesis.belts import lay_belts, pairs_of
+from texloom.fusion.belt_samples import belt_sample
+from texloom.fusion.belts import lay_belts, pairs_of
 
 
 def columns(grid: Grid, *borders: int) -> ndarray:
