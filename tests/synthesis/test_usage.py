@@ -7,12 +7,16 @@ from tests.synthesis.samples import ball, blobs, exemplar, holes
 from texloom.arrays import in_fours
 from texloom.domain.domain import Domain
 from texloom.domain.grid import Grid
+from texloom.exemplar.exemplar import from_array
 from texloom.exemplar.features import match_image
 from texloom.search.blocks import BlockSearch
+from texloom.synthesis import expansion
 from texloom.synthesis.blocks import BlockGrowth
 from texloom.synthesis.canvas import Canvas
+from texloom.synthesis.patches import PatchSampling
 from texloom.synthesis.schedule import batches, overlaps
 from texloom.synthesis.seams import ring
+from texloom.synthesis.synthesize import synthesize
 from texloom.synthesis.usage import Usage
 
 
@@ -52,3 +56,27 @@ def test_a_block_shown_often_is_in_excess() -> None:
     usage.add(at, np.full(64, 50, np.float32))
     assert (search.anchors[usage.excess().argmax()] == 8).all()
     assert usage.excess().max() == pytest.approx(16)  # all of the use in a sixteenth of the sample
+
+
+def test_use_around_a_position_is_in_fair_shares():
+    """Four cells; all that is shown lies in one, which is four times its share, counted as three."""
+    usage = Usage(BlockSearch(np.zeros((16, 16, 4), np.float32), 8, step=8))
+    usage.add(np.full((200, 2), 3, np.float32), np.ones(200, np.float32))
+    places = np.array([[0, 0], [7, 7], [8, 0], [0, 15]], np.float32)
+    np.testing.assert_allclose(usage.excess_at(places), [3, 3, 0, 0])
+    usage.add(np.full((200, 2), 12, np.float32), np.ones(200, np.float32))
+    np.testing.assert_allclose(usage.excess_at(places), [2, 2, 0, 0])
+
+
+def test_blocks_that_settle_do_not_drop_what_is_not_plain(monkeypatch):
+    """Half of the sample is plain, where seams cost nothing: by seams alone little else is left."""
+    image = np.full((48, 48, 3), 0.5, np.float32)
+    image[:, 24:] = 0.35 + 0.3 * np.random.default_rng(0).random((48, 24, 3))
+    sample, domain, method = from_array(image), Grid(96, 96), PatchSampling(patch=16, settle=True)
+
+    def plain() -> float:
+        return float((synthesize(sample, domain, method, seed=2).sources.position[:, 0, 1] < 24).mean())
+
+    even = plain()
+    monkeypatch.setattr(expansion, "_BALANCE", 0.0)
+    assert even < 0.86 < plain()

@@ -16,10 +16,12 @@ from texloom.domain.domain import Domain
 from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.cuts import cheapest_side
 from texloom.synthesis.gaps import turned
+from texloom.synthesis.usage import Usage
 
 _NEXT = 1.5  # squared texels: seams run between sites this near
 _DEPTH = 2  # texels: how far known sites beyond the border are compared
 _LEAST = 1e-3  # of all cost: what a proposal must promise to be looked at
+_BALANCE = 1.0  # first mean costs of a site, paid for showing what has had its fair share
 _BORDER = 2.0  # weight of each of those; a seam between two sites that may change counts both ways, each whole
 
 
@@ -43,11 +45,18 @@ class Expansion:
 
     A seam costs the distance (not squared, so that cuts are exact) between what one side's source, continued, would
     show on the other side, and what is shown there; both ways between sites that may change. Work for one proposal
-    grows with its sites.
+    grows with its sites. With ``usage`` a site also pays for showing what is shown more than its fair share: seams are
+    cheapest where the sample is plain, and only plain parts would be left.
     """
 
     def __init__(
-        self, canvas: Canvas, image: Image, usable: Bool[np.ndarray, "row column"], domain: Domain, sites: np.ndarray
+        self,
+        canvas: Canvas,
+        image: Image,
+        usable: Bool[np.ndarray, "row column"],
+        domain: Domain,
+        sites: np.ndarray,
+        usage: Usage | None = None,
     ) -> None:
         self._canvas, self._image, self._usable = canvas, image, usable
         self._sites = np.flatnonzero(sites).astype(np.int32)
@@ -60,6 +69,10 @@ class Expansion:
         self._onto_first = np.empty((count, image.shape[2]), np.float32)
         self._cost = np.empty(count, np.float32)
         self._update(np.arange(count))
+        self._usage = usage
+        if usage is not None:
+            usage.add(canvas.position[self._sites], np.ones(len(self._sites), np.float32))
+            self._price = _BALANCE * self.cost / len(self._sites)
 
     @property
     def cost(self) -> float:
@@ -94,6 +107,10 @@ class Expansion:
         takes = self._cut(self._number[site], (position, turn, colour), node.astype(np.int32), len(cell))[node]
         if takes.any():
             moved, canvas = site[takes], self._canvas
+            if self._usage is not None:
+                weight = np.ones(len(moved), np.float32)
+                self._usage.add(canvas.position[moved], -weight)
+                self._usage.add(position[takes], weight)
             canvas.position[moved], canvas.turn[moved] = position[takes], turn[takes]
             canvas.colour[moved], canvas.label[moved] = colour[takes], label
             inside, across = self._pairs.of_sites(self._number[moved])
@@ -110,6 +127,9 @@ class Expansion:
         alone, both = second < 0, second >= 0
         across = across[self._node[pairs.first[across]] < 0]
         take = np.zeros(count)  # what taking costs a node more than keeping
+        if self._usage is not None:
+            dearer = self._usage.excess_at(position) - self._usage.excess_at(canvas.position[self._sites[number]])
+            take += np.bincount(node, self._price * dearer, count)
 
         # Both may take: nothing if they do, for the block fits itself.
         e, f, s = inside[both], first[both], second[both]

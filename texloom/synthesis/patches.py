@@ -25,12 +25,14 @@ from texloom.synthesis.growth import Grown
 from texloom.synthesis.result import Result
 from texloom.synthesis.schedule import batches, breadth_first, inwards, overlaps, touching
 from texloom.synthesis.seams import ring
+from texloom.synthesis.usage import Usage
 
 Order = Literal["scan", "breadth-first", "random"]
 
 _STEP = 4  # texels; patches are a whole number of steps wide
 _LARGE = 384  # texels: samples with this shorter side or more are searched in double steps first
 _THIN = 2  # steps from what is known: bare sites no farther need no block
+_CELLS = 8  # along the sample's shorter side: parts whose use is evened out when blocks settle
 _LARGEST = 64  # texels: larger blocks would show as copies
 
 
@@ -79,7 +81,7 @@ class PatchSampling:
         if not bare.any():
             return Grown()
         clock = [time.perf_counter()]
-        continuing, deep = None, bare
+        continuing, usage, deep = None, None, bare
         if known.any():
             width = min(WIDTH, self.width_for(exemplar))
             steps = steps_from(domain, known, width)
@@ -92,8 +94,10 @@ class PatchSampling:
         clock.append(time.perf_counter())
         if self.settle and not known.any():
             continuing = Continuing.everywhere(canvas, image, exemplar, domain, bare, seed)
+            cell = max(exemplar.least_side // _CELLS, 2)
+            usage = Usage(BlockSearch(image, cell, exemplar.mask, step=cell))
         if continuing is not None:
-            expansion = Expansion(canvas, image, exemplar.usable, domain, bare)
+            expansion = Expansion(canvas, image, exemplar.usable, domain, bare, usage)
             continuing.take_over(expansion, canvas.next_label, report)
         clock.append(time.perf_counter())
         matching, laying, cutting = np.diff(clock).tolist()

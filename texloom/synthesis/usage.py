@@ -1,11 +1,12 @@
 """A fair share for every part of the sample: how often each is shown so far."""
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float32, Int32
 
 from texloom.exemplar.exemplar import Part
 from texloom.search.blocks import BlockSearch
 
+_MOST = 3.0  # fair shares: what is shown more often is no dearer
 SOON = 0.3
 """Times the sample is taken to have been shown at least: chance should not weigh while there is little to share."""
 
@@ -24,9 +25,12 @@ class Usage:
 
     def add(self, position: Float32[np.ndarray, "n 2"], area: Float32[np.ndarray, "n"]) -> None:
         """Count sites that now show ``position`` (with negative area: no longer)."""
-        cell = np.clip((position * np.float32(1 / self._step)).astype(np.int32), 0, np.array(self._shape) - 1)
-        flat = cell[:, 0] * self._shape[1] + cell[:, 1]
+        flat = self._cell(position)
         self._shown += np.bincount(flat, weights=area, minlength=self._shown.size).reshape(self._shape)
+
+    def excess_at(self, position: Float32[np.ndarray, "n 2"]) -> Float32[np.ndarray, "n"]:
+        """Use of the cell around each position over its fair share, which is at most 3 here: 1 is fair, 0 unused."""
+        return np.minimum(self._shown / self._fair, _MOST).astype(np.float32).ravel()[self._cell(position)]
 
     def shown(self, part: Part) -> float:
         """Texels of output that show the part; a cell that it ends in holds nothing else."""
@@ -41,5 +45,13 @@ class Usage:
         total = np.pad(self._shown.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
         r, c, n = self._candidates[:, 0], self._candidates[:, 1], self._cells
         block = total[r + n, c + n] - total[r, c + n] - total[r + n, c] + total[r, c]
-        fair = max(self._shown.mean() / self._usable, SOON * self._step**2)
-        return (block / (n * n * fair)).astype(np.float32)
+        return (block / (n * n * self._fair)).astype(np.float32)
+
+    @property
+    def _fair(self) -> float:
+        return max(self._shown.mean() / self._usable, SOON * self._step**2)
+
+    def _cell(self, position: Float32[np.ndarray, "n 2"]) -> Int32[np.ndarray, "n"]:
+        """The cell around each position, scan-line order."""
+        cell = np.clip((position * np.float32(1 / self._step)).astype(np.int32), 0, np.array(self._shape) - 1)
+        return cell[:, 0] * np.int32(self._shape[1]) + cell[:, 1]
