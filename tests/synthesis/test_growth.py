@@ -17,7 +17,7 @@ from texloom.field.planar import NAMED
 from texloom.progress import silent
 from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.correction import Correction
-from texloom.synthesis.growth import Grown, run
+from texloom.synthesis.growth import Grown, Growth, run_on_bare
 from texloom.synthesis.optimize import Optimize
 from texloom.synthesis.patches import PatchSampling
 
@@ -53,7 +53,7 @@ def grow(
     canvas: Canvas, domain: Domain, sample: Exemplar, sites: ndarray | None = None, method: Optimize | None = None
 ) -> Grown:
     image = in_fours(match_image(sample))
-    return (method or Optimize()).grow(canvas, sample, image, domain, sites=sites, seed=1, report=silent)
+    return (method or Optimize()).grow(Growth(canvas, sample, image, domain, sites, seed=1))
 
 
 def blank(domain: Domain, sample: Exemplar) -> Canvas:
@@ -82,7 +82,7 @@ def test_an_empty_canvas_with_all_sites_is_a_plain_run(name: str) -> None:
     domain, sample = DOMAINS[name](), exemplar(32)
     canvas = blank(domain, sample)
     grown = grow(canvas, domain, sample, np.ones(domain.count, bool))
-    whole = run(Optimize(), sample, domain, seed=1, report=silent)
+    whole = run_on_bare(Optimize(), sample, domain, seed=1, report=silent)
     np.testing.assert_array_equal(canvas.position, whole.sources.position[:, 0])
     assert grown.energy == whole.energy and grown.patches == whole.patches
 
@@ -91,9 +91,7 @@ def test_nothing_bare_is_nothing_laid() -> None:
     domain, sample = Grid(24, 24), exemplar(32)
     canvas = blank(domain, sample)
     grow(canvas, domain, sample)
-    assert (
-        PatchSampling().grow(canvas, sample, in_fours(match_image(sample)), domain, seed=1, report=silent).patches == 0
-    )
+    assert PatchSampling().grow(Growth(canvas, sample, in_fours(match_image(sample)), domain, seed=1)).patches == 0
 
 
 def test_what_is_masked_is_not_shown_around_what_is_known() -> None:

@@ -17,11 +17,10 @@ from texloom.exemplar.features import match_image
 from texloom.exemplar.scale import dominant_scale
 from texloom.kernels.launch import thread_count, use
 from texloom.output.gather import gather_sites
-from texloom.progress import silent
 from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.fill import fill
-from texloom.synthesis.growth import Grown
-from texloom.synthesis.refine import Refine, _Task
+from texloom.synthesis.growth import Grown, Growth
+from texloom.synthesis.refine import Refine, _plant
 from texloom.synthesis.result import Result
 from texloom.synthesis.scan import Scan
 from texloom.synthesis.synthesize import synthesize
@@ -138,7 +137,7 @@ def test_a_window_wider_than_the_sample_is_refused_in_scan_lines() -> None:
 
 def grow(method: Refine, canvas: Canvas, sample: Exemplar, domain: Domain, sites: ndarray | None) -> Grown:
     image = in_fours(match_image(sample))
-    return method.grow(canvas, sample, image, domain, sites=sites, seed=1, report=silent)
+    return method.grow(Growth(canvas, sample, image, domain, sites, seed=1))
 
 
 def shown(sample: Exemplar, known: ndarray) -> Canvas:
@@ -210,13 +209,13 @@ def test_seeds_are_planted_where_there_is_room_and_nothing_is_known_within_a_win
     known[:, :9] = True
     sites = np.argwhere(np.ones((64, 64)))[:, 0] < 50
     canvas = shown(sample, known)
-    task = _Task(canvas, sample, in_fours(match_image(sample)), Grid(64, 64), sites & ~known.ravel(), 1, silent)
-    task.plant(Lattice(64, 64, False), 8, 12)
+    growth = Growth(canvas, sample, in_fours(match_image(sample)), Grid(64, 64), sites & ~known.ravel(), seed=1)
+    _plant(growth, Lattice(64, 64, False), 8, 12)
     planted = np.argwhere(((canvas.label >= 0) & ~known.ravel()).reshape(64, 64))
     expected = [(row, column) for row in range(0, 50, 8) for column in range(24, 64, 8)]
     np.testing.assert_array_equal(planted, expected)
     texel = canvas.position.reshape(64, 64, 2)[tuple(planted.T)].astype(int)
-    np.testing.assert_array_equal(canvas.colour.reshape(64, 64, 4)[tuple(planted.T)], task.image[tuple(texel.T)])
+    np.testing.assert_array_equal(canvas.colour.reshape(64, 64, 4)[tuple(planted.T)], growth.image[tuple(texel.T)])
 
 
 def test_growing_in_parallel_on_a_mesh_leaves_other_sites() -> None:

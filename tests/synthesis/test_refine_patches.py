@@ -7,18 +7,17 @@ import pytest
 from numpy import ndarray
 
 from tests.synthesis.samples import ball, blobs, exemplar, flagged, holes
-from texloom.arrays import Image, in_fours
+from texloom.arrays import in_fours
 from texloom.domain.domain import Domain
 from texloom.domain.grid import Grid
 from texloom.errors import ParameterError
-from texloom.exemplar.exemplar import Exemplar, from_array
+from texloom.exemplar.exemplar import from_array
 from texloom.exemplar.features import match_image
 from texloom.exemplar.join import join
 from texloom.kernels.launch import thread_count, use
 from texloom.output.gather import gather_sites
-from texloom.progress import Report, silent
 from texloom.synthesis.canvas import Canvas
-from texloom.synthesis.growth import Grown
+from texloom.synthesis.growth import Grown, Growth
 from texloom.synthesis.patches import PatchSampling
 from texloom.synthesis.refine_patches import RefinePatches
 from texloom.synthesis.synthesize import synthesize
@@ -33,21 +32,11 @@ class Watched:
     bare: list[ndarray] = field(default_factory=list)
     label: list[ndarray] = field(default_factory=list)
 
-    def grow(
-        self,
-        canvas: Canvas,
-        exemplar: Exemplar,
-        image: Image,
-        domain: Domain,
-        *,
-        sites: ndarray | None = None,
-        seed: int,
-        report: Report,
-    ) -> Grown:
-        assert sites is not None
-        self.bare.append(sites.copy())
-        self.label.append(canvas.label.copy())
-        return PatchSampling(patch=8).grow(canvas, exemplar, image, domain, sites=sites, seed=seed, report=report)
+    def grow(self, growth: Growth) -> Grown:
+        assert growth.sites is not None
+        self.bare.append(growth.sites.copy())
+        self.label.append(growth.canvas.label.copy())
+        return PatchSampling(patch=8).grow(growth)
 
 
 @pytest.mark.parametrize("wrap", [False, True], ids=["plane", "torus"])
@@ -91,7 +80,7 @@ def test_what_may_not_change_stays_and_the_rest_is_coloured() -> None:
     canvas.label[given.ravel()] = 0
     before = canvas.position.copy()
     sites = ~given.ravel() & (np.arange(grid.count) % 50 < 45)
-    RefinePatches().grow(canvas, sample, image, grid, sites=sites, seed=1, report=silent)
+    RefinePatches().grow(Growth(canvas, sample, image, grid, sites, seed=1))
     np.testing.assert_array_equal(canvas.label >= 0, given.ravel() | sites)
     np.testing.assert_array_equal(canvas.position[~sites], before[~sites])
 

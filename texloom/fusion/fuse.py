@@ -29,7 +29,7 @@ from texloom.fusion.belts import Belts, lay_belts, pairs_of
 from texloom.fusion.borders import cut_border
 from texloom.progress import Report, silent
 from texloom.synthesis.canvas import Canvas
-from texloom.synthesis.growth import Grower, Grown, added, result_of
+from texloom.synthesis.growth import Grower, Grown, Growth, added, result_of
 from texloom.synthesis.optimize import Optimize
 from texloom.synthesis.result import Result
 
@@ -109,7 +109,7 @@ class _Growing:
             return
         sample, seed = self.joined.within(part), draws.key(self.seed, part)
         grower = method or self.method
-        grown = grower.grow(canvas, sample, self._image, self.domain, sites=sites, seed=seed, report=self.report)
+        grown = grower.grow(Growth(canvas, sample, self._image, self.domain, sites, seed, self.report))
         self._all.append(grown)
         self._seconds = added(self._seconds, grown.seconds)
 
@@ -144,7 +144,7 @@ def _by_cuts(samples: Sequence[Exemplar], belts: Belts, growing: _Growing) -> Fu
     for label, layer in enumerate(layers):
         _take(canvas, layer, shown == label)
     growing.took("cut", clock)
-    return Fused(growing.joined, result_of(canvas, growing.grown()), shown)
+    return Fused(growing.joined, result_of(canvas.sources(), growing.grown()), shown)
 
 
 def _by_samples(
@@ -184,7 +184,7 @@ def _by_samples(
         second, position[sites] = mixed[number].origin(position[sites])
         shown[sites] = pair[second.astype(np.int32)]
     canvas.position[:] = position + np.array([(p.row, p.column) for p in kept.parts], np.float32)[shown]
-    return Fused(kept, result_of(canvas, growing.grown()), shown)
+    return Fused(kept, result_of(canvas.sources(), growing.grown()), shown)
 
 
 def _take(canvas: Canvas, layer: Canvas, sites: Bool[np.ndarray, "site"]) -> None:

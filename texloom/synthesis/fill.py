@@ -16,7 +16,7 @@ from texloom.progress import Report, silent
 from texloom.search.blocks import BlockSearch, readable
 from texloom.sources import SourceMap
 from texloom.synthesis.canvas import Canvas, nearest_usable
-from texloom.synthesis.growth import Grower
+from texloom.synthesis.growth import Grower, Growth, added, result_of
 from texloom.synthesis.optimize import Optimize
 from texloom.synthesis.result import Result
 
@@ -71,11 +71,9 @@ def fill(
     canvas = task.canvas(image)
     domain = Grid(*task.hole.shape, wrap=wrap)
     seconds = {"analysis": time.perf_counter() - start}
-    grown = (method or Optimize()).grow(
-        canvas, task.learnt, image, domain, sites=task.hole.ravel(), seed=seed, report=report
-    )
-    seconds = grown.seconds | {"analysis": seconds["analysis"] + grown.seconds.get("analysis", 0.0)}
-    result = Result(task.sources(canvas), grown.energy, seconds, grown.stopped, grown.patches, grown.curves)
+    hidden = task.hole.ravel()
+    grown = (method or Optimize()).grow(Growth(canvas, task.learnt, image, domain, hidden, seed, report))
+    result = result_of(task.sources(canvas), replace(grown, seconds=added(seconds, grown.seconds)))
     return Filled(picture, hole, task.vocabulary, result)
 
 

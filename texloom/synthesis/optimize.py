@@ -4,17 +4,13 @@ import time
 from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import Bool
 
-from texloom.arrays import Image
 from texloom.domain.domain import Domain
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Exemplar
 from texloom.progress import Report
-from texloom.synthesis import growth
-from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.correction import Correction, near_borders
-from texloom.synthesis.growth import Grown
+from texloom.synthesis.growth import Grown, Growth, run_on_bare
 from texloom.synthesis.patches import PatchSampling
 from texloom.synthesis.result import Result
 
@@ -44,28 +40,20 @@ class Optimize:
 
     def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
         """Cover the domain with blocks, then correct their borders; see ``synthesize``."""
-        return growth.run(self, exemplar, domain, seed=seed, report=report)
+        return run_on_bare(self, exemplar, domain, seed=seed, report=report)
 
-    def grow(
-        self,
-        canvas: Canvas,
-        exemplar: Exemplar,
-        image: Image,
-        domain: Domain,
-        *,
-        sites: Bool[np.ndarray, "site"] | None = None,
-        seed: int,
-        report: Report,
-    ) -> Grown:
+    def grow(self, growth: Growth) -> Grown:
         """Blocks over what is bare, then correction near all borders, those of what was known included."""
-        width = self.width if (canvas.label < 0).all() else min(self.width, _BESIDE)
-        laid = self.start.grow(canvas, exemplar, image, domain, sites=sites, seed=seed, report=report)
+        width = min(self.width, _BESIDE) if growth.known.any() else self.width
+        laid = self.start.grow(growth)
         clock = [time.perf_counter()]
-        correction = Correction.of(exemplar, image, reach=width // 2, alike=self.alike)
+        correction = Correction.of(growth.exemplar, growth.image, reach=width // 2, alike=self.alike)
         clock.append(time.perf_counter())
-        near = near_borders(canvas, domain, self.reach)
-        visited = np.flatnonzero(near if sites is None else near & sites).astype(np.int32)
-        energy = correction.run(canvas, domain, visited, passes=self.passes, seed=seed, report=report)
+        near = near_borders(growth.canvas, growth.domain, self.reach)
+        visited = np.flatnonzero(near & growth.writable).astype(np.int32)
+        energy = correction.run(
+            growth.canvas, growth.domain, visited, passes=self.passes, seed=growth.seed, report=growth.report
+        )
         clock.append(time.perf_counter())
         analysis, correcting = np.diff(clock).tolist()
         seconds = laid.seconds | {"analysis": analysis, "correction": correcting}

@@ -16,12 +16,10 @@ from texloom.errors import ExemplarError, ParameterError
 from texloom.exemplar.exemplar import Exemplar
 from texloom.progress import Report
 from texloom.search.blocks import BlockSearch, roomy
-from texloom.synthesis import growth
 from texloom.synthesis.blocks import BlockGrowth
-from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.continuing import WIDTH, Across, Continuing
 from texloom.synthesis.expansion import Expansion
-from texloom.synthesis.growth import Grown
+from texloom.synthesis.growth import Grown, Growth, run_on_bare
 from texloom.synthesis.result import Result
 from texloom.synthesis.schedule import batches, breadth_first, inwards, overlaps, touching
 from texloom.synthesis.seams import ring
@@ -63,21 +61,12 @@ class PatchSampling:
 
     def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
         """Cover the domain once; see ``synthesize``."""
-        return growth.run(self, exemplar, domain, seed=seed, report=report)
+        return run_on_bare(self, exemplar, domain, seed=seed, report=report)
 
-    def grow(
-        self,
-        canvas: Canvas,
-        exemplar: Exemplar,
-        image: Image,
-        domain: Domain,
-        *,
-        sites: Bool[np.ndarray, "site"] | None = None,
-        seed: int,
-        report: Report,
-    ) -> Grown:
+    def grow(self, growth: Growth) -> Grown:
         """Blocks over all that is bare, inwards from what is known, then cheaper ones at its border; see ``Grower``."""
-        bare, known = canvas.bare(sites), canvas.label >= 0
+        canvas, exemplar, image, domain = growth.canvas, growth.exemplar, growth.image, growth.domain
+        bare, known = growth.bare, growth.known
         if not bare.any():
             return Grown()
         clock = [time.perf_counter()]
@@ -87,48 +76,38 @@ class PatchSampling:
             steps = steps_from(domain, known, width)
             deep = bare & (steps > _THIN)  # what is as thin as a scratch is closed from its sides
             across = Across(domain, bare, int(steps[bare].max()))
-            continuing = Continuing.of(canvas, image, exemplar.mask, across, width=width, seed=seed)
+            continuing = Continuing.of(canvas, image, exemplar.mask, across, width=width, seed=growth.seed)
         clock.append(time.perf_counter())
-        count, tracing = self.lay(canvas, exemplar, image, domain, deep, sites, seed=seed, report=report)
-        canvas.close(domain, image, exemplar.mask, sites)
+        count, tracing = self.lay(growth, deep)
+        canvas.close(domain, image, exemplar.mask, growth.sites)
         clock.append(time.perf_counter())
         if self.settle and not known.any():
-            continuing = Continuing.everywhere(canvas, image, exemplar, domain, bare, seed)
+            continuing = Continuing.everywhere(canvas, image, exemplar, domain, bare, growth.seed)
             cell = max(exemplar.least_side // _CELLS, 2)
             usage = Usage(BlockSearch(image, cell, exemplar.mask, step=cell))
         if continuing is not None:
             expansion = Expansion(canvas, image, exemplar.usable, domain, bare, usage)
-            continuing.take_over(expansion, canvas.next_label, report)
+            continuing.take_over(expansion, canvas.next_label, growth.report)
         clock.append(time.perf_counter())
         matching, laying, cutting = np.diff(clock).tolist()
         seconds = {"patches": tracing, "blocks": laying - tracing}
         return Grown(seconds=seconds if continuing is None else seconds | {"seams": matching + cutting}, patches=count)
 
-    def lay(
-        self,
-        canvas: Canvas,
-        exemplar: Exemplar,
-        image: Image,
-        domain: Domain,
-        bare: Bool[np.ndarray, "site"],
-        sites: Bool[np.ndarray, "site"] | None,
-        *,
-        seed: int,
-        report: Report,
-    ) -> tuple[int, float]:
+    def lay(self, growth: Growth, bare: Bool[np.ndarray, "site"]) -> tuple[int, float]:
         """Blocks over every patch that touches a bare site; how many, and the seconds that preparing patches took."""
         if not bare.any():
             return 0, 0.0
-        search = self.search_for(exemplar, image)
+        exemplar, domain, seed = growth.exemplar, growth.domain, growth.seed
+        search = self.search_for(exemplar, growth.image)
         depth = max(2, round(self.overlap * search.width))
         start = time.perf_counter()
         patches = self.patches(domain, bare, search.width, depth, seed)
         laid = touching(patches, bare)
-        groups = self.groups(patches, laid, canvas.label >= 0, seed)
+        groups = self.groups(patches, laid, growth.known, seed)
         spent = time.perf_counter() - start
         seams = ring(search.width, depth)
-        blocks = BlockGrowth(patches, search, seams, domain.area, self.balance, seed, sites, exemplar.parts)
-        blocks.run(canvas, groups, report)
+        blocks = BlockGrowth(patches, search, seams, domain.area, self.balance, seed, growth.sites, exemplar.parts)
+        blocks.run(growth.canvas, groups, growth.report)
         return len(laid), spent
 
     def patches(self, domain: Domain, bare: Bool[np.ndarray, "site"], width: int, depth: int, seed: int) -> Patches:

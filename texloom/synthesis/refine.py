@@ -7,7 +7,6 @@ from itertools import count
 from typing import Literal, get_args
 
 import numpy as np
-from jaxtyping import Bool
 
 from texloom.arrays import Image
 from texloom.domain.domain import Domain, Lattice
@@ -20,12 +19,10 @@ from texloom.exemplar.scale import dominant_scale
 from texloom.exemplar.windows import Windows
 from texloom.progress import Report
 from texloom.search.blocks import BlockSearch
-from texloom.synthesis import growth
-from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.continuing import roomy
 from texloom.synthesis.convergence import Convergence, Difference
 from texloom.synthesis.correction import Correction, near_borders
-from texloom.synthesis.growth import Grown
+from texloom.synthesis.growth import Grown, Growth, added, run_on_bare
 from texloom.synthesis.patches import PatchSampling
 from texloom.synthesis.result import Result
 from texloom.synthesis.scan import Scan
@@ -84,27 +81,15 @@ class Refine:
 
     def run(self, exemplar: Exemplar, domain: Domain, *, seed: int, report: Report) -> Result:
         """Cover the domain; see ``synthesize``."""
-        return growth.run(self, exemplar, domain, seed=seed, report=report)
+        return run_on_bare(self, exemplar, domain, seed=seed, report=report)
 
-    def grow(
-        self,
-        canvas: Canvas,
-        exemplar: Exemplar,
-        image: Image,
-        domain: Domain,
-        *,
-        sites: Bool[np.ndarray, "site"] | None = None,
-        seed: int,
-        report: Report,
-    ) -> Grown:
+    def grow(self, growth: Growth) -> Grown:
         """Colour the bare sites, then refine all of ``sites``; see ``Grower``."""
         start = time.perf_counter()
-        window, pitch = self._sizes(exemplar)
+        window, pitch = self._sizes(growth.exemplar)
         seconds = {"analysis": time.perf_counter() - start}
-        writable = np.ones(domain.count, bool) if sites is None else sites
-        task = _Task(canvas, exemplar, image, domain, writable, seed, report)
-        grown = self._parallel(task, window) if self.order == "parallel" else self._scan_lines(task, window, pitch)
-        return replace(grown, seconds=growth.added(seconds, grown.seconds))
+        grown = self._parallel(growth, window) if self.order == "parallel" else self._scan_lines(growth, window, pitch)
+        return replace(grown, seconds=added(seconds, grown.seconds))
 
     def _sizes(self, exemplar: Exemplar) -> tuple[int, int]:
         """Window and pitch, in texels: as asked, or by the dominant scale; a window is at most half the sample wide."""
@@ -114,18 +99,18 @@ class Refine:
         most = max(3, exemplar.least_side // 2)
         return self.window or min(max(3, round(2 * scale)), most), self.pitch or max(1, min(round(scale), most))
 
-    def _parallel(self, task: "_Task", window: int) -> Grown:
+    def _parallel(self, growth: Growth, window: int) -> Grown:
         """Blocks, then passes in which every pixel tries what its surroundings suggest."""
-        canvas, domain, exemplar = task.canvas, task.domain, task.exemplar
-        blocks = PatchSampling(patch=self._block(exemplar, task.image, window), settle=True)
-        grown = blocks.grow(canvas, exemplar, task.image, domain, sites=task.sites, seed=task.seed, report=task.report)
+        canvas, domain, exemplar = growth.canvas, growth.domain, growth.exemplar
+        blocks = PatchSampling(patch=self._block(exemplar, growth.image, window), settle=True)
+        grown = blocks.grow(growth)
         start = time.perf_counter()
-        correction = Correction.of(exemplar, task.image, reach=min(window // 2, _NEAR), alike=self.alike)
-        near = np.flatnonzero(near_borders(canvas, domain, _BORDER) & task.sites).astype(np.int32)
-        passes = correction.passes(canvas, domain, near, seed=task.seed)
-        curve = Convergence(self.difference, self.threshold, task.sites)
-        energy, stopped = curve.follow(canvas, _told(passes, self.passes, task.report), self.passes)
-        seconds = growth.added(grown.seconds, {"refinement": time.perf_counter() - start})
+        correction = Correction.of(exemplar, growth.image, reach=min(window // 2, _NEAR), alike=self.alike)
+        near = np.flatnonzero(near_borders(canvas, domain, _BORDER) & growth.writable).astype(np.int32)
+        passes = correction.passes(canvas, domain, near, seed=growth.seed)
+        curve = Convergence(self.difference, self.threshold, growth.writable)
+        energy, stopped = curve.follow(canvas, _told(passes, self.passes, growth.report), self.passes)
+        seconds = added(grown.seconds, {"refinement": time.perf_counter() - start})
         return Grown(energy, seconds, stopped, grown.patches, curve.curves)
 
     def _block(self, exemplar: Exemplar, image: Image, window: int) -> int:
@@ -135,65 +120,54 @@ class Refine:
         search = roomy(BlockSearch(image, width, exemplar.mask) for width in range(widest, LEAST_SIDE - 1, -4))
         return LEAST_SIDE if search is None else search.width
 
-    def _scan_lines(self, task: "_Task", window: int, pitch: int) -> Grown:
+    def _scan_lines(self, growth: Growth, window: int, pitch: int) -> Grown:
         """A first pass from seeds, or from what is known; then passes with whole windows."""
-        lattice = task.domain.lattice
+        lattice = growth.domain.lattice
         if lattice is None:
             raise ParameterError("scan-line order needs an image without a field: use the parallel order")
         start = time.perf_counter()
-        window = window if self.window else _fitting(task.exemplar, window)
-        windows = Windows.of(_filled(task.image), window // 2, self.dimensions, task.exemplar.mask)
-        hole = not task.canvas.bare().all()
+        window = window if self.window else _fitting(growth.exemplar, window)
+        windows = Windows.of(_filled(growth.image), window // 2, self.dimensions, growth.exemplar.mask)
+        hole = not growth.canvas.bare().all()
         if not hole:
             lattice = lattice._replace(wrap=True)
-        task.plant(lattice, pitch, window)
+        _plant(growth, lattice, pitch, window)
         seconds = {"analysis": time.perf_counter() - start}
         start = time.perf_counter()
-        scan = Scan(task.canvas, task.image, windows, lattice, self.shortlist)
-        passes = self._scans(scan, task, turning=hole)
+        scan = Scan(growth.canvas, growth.image, windows, lattice, self.shortlist)
+        passes = self._scans(scan, growth, turning=hole)
         first = next(passes)
-        curve = Convergence(self.difference, self.threshold, task.sites)
-        energy, stopped = curve.follow(task.canvas, passes, self.passes - 1)
+        curve = Convergence(self.difference, self.threshold, growth.writable)
+        energy, stopped = curve.follow(growth.canvas, passes, self.passes - 1)
         seconds |= {"scan": time.perf_counter() - start}
         return Grown((first, *energy), seconds, stopped, 0, curve.curves)
 
-    def _scans(self, scan: Scan, task: "_Task", *, turning: bool) -> Iterator[float]:
+    def _scans(self, scan: Scan, growth: Growth, *, turning: bool) -> Iterator[float]:
         """The bare sites, then all of them again and again, ``turning`` in four directions; the cost of each pass."""
         reach = scan.windows.reach
         for turn in count():
-            chosen = task.sites if turn else task.canvas.bare(task.sites)
+            chosen = growth.writable if turn else growth.bare
             steps = stencil(reach) if turn else square(min(reach, _FIRST))
             direction = turn % 4 if turning else 0
             for done in scan.run(chosen, steps, axis=direction % 2, backwards=direction > 1):
-                task.report("scan", (turn + done) / self.passes)
+                growth.report("scan", (turn + done) / self.passes)
             yield float(scan.cost[chosen].mean(dtype=np.float64)) if chosen.any() else 0.0
 
 
-@dataclass(frozen=True, eq=False)
-class _Task:
-    """What ``grow`` is asked for; ``sites`` may be written."""
-
-    canvas: Canvas
-    exemplar: Exemplar
-    image: Image
-    domain: Domain
-    sites: Bool[np.ndarray, "site"]
-    seed: int
-    report: Report
-
-    def plant(self, lattice: Lattice, pitch: int, apart: int) -> None:
-        """Seed points on an even grid, ``apart`` from what is known: nearer it is the better guide."""
-        room = self.sites & ~within(self.domain, self.canvas.label >= 0, apart)
-        grid = max(1, round(lattice.rows / pitch)), max(1, round(lattice.columns / pitch))
-        row, column = (np.arange(n) * size // n for n, size in zip(grid, lattice[:2], strict=True))
-        site = (row[:, None] * lattice.columns + column).ravel()
-        if not room[site].any():
-            return
-        source = plant(self.image, pitch, grid, seed=self.seed, usable=self.exemplar.mask).reshape(-1, 2)
-        source, site = source[room[site]], site[room[site]]
-        self.canvas.position[site] = source
-        self.canvas.colour[site] = self.image[source[:, 0], source[:, 1]]
-        self.canvas.label[site] = 0
+def _plant(growth: Growth, lattice: Lattice, pitch: int, apart: int) -> None:
+    """Seed points on an even grid, ``apart`` from what is known: nearer it is the better guide."""
+    canvas, image = growth.canvas, growth.image
+    room = growth.writable & ~within(growth.domain, growth.known, apart)
+    grid = max(1, round(lattice.rows / pitch)), max(1, round(lattice.columns / pitch))
+    row, column = (np.arange(n) * size // n for n, size in zip(grid, lattice[:2], strict=True))
+    site = (row[:, None] * lattice.columns + column).ravel()
+    if not room[site].any():
+        return
+    source = plant(image, pitch, grid, seed=growth.seed, usable=growth.exemplar.mask).reshape(-1, 2)
+    source, site = source[room[site]], site[room[site]]
+    canvas.position[site] = source
+    canvas.colour[site] = image[source[:, 0], source[:, 1]]
+    canvas.label[site] = 0
 
 
 def _told(passes: Iterator[float], most: int, report: Report) -> Iterator[float]:

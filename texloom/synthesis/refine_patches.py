@@ -1,20 +1,14 @@
 """Whole samples laid over each other where they fit, and grown together where they meet (key `refine-patches`)."""
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-import numpy as np
-from jaxtyping import Bool
-
-from texloom.arrays import Image
 from texloom.domain.domain import Domain
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Exemplar
 from texloom.exemplar.scale import dominant_scale
 from texloom.progress import Report
-from texloom.synthesis import growth
-from texloom.synthesis.canvas import Canvas
-from texloom.synthesis.growth import Grower, Grown
+from texloom.synthesis.growth import Grower, Grown, Growth, added, run_on_bare
 from texloom.synthesis.laying import Laying
 from texloom.synthesis.optimize import Optimize
 from texloom.synthesis.result import Result
@@ -49,40 +43,30 @@ class RefinePatches:
 
         Raises: ParameterError, for a surface, or an image along a field.
         """
-        return growth.run(self, exemplar, domain, seed=seed, report=report)
+        return run_on_bare(self, exemplar, domain, seed=seed, report=report)
 
-    def grow(
-        self,
-        canvas: Canvas,
-        exemplar: Exemplar,
-        image: Image,
-        domain: Domain,
-        *,
-        sites: Bool[np.ndarray, "site"] | None = None,
-        seed: int,
-        report: Report,
-    ) -> Grown:
+    def grow(self, growth: Growth) -> Grown:
         """Pieces over what is bare, then ``fill`` where they meet; see ``Grower``.
 
         Of known sites among ``sites``, those near pieces are grown anew.
         """
-        lattice = domain.lattice
+        canvas, lattice = growth.canvas, growth.domain.lattice
         if lattice is None:
             raise ParameterError(
                 "refine-patches lays samples along an image's rows and columns, which a mesh or a field has not: "
                 "use optimize there"
             )
         start = time.perf_counter()
-        depth = self.depth_for(exemplar)
+        depth = self.depth_for(growth.exemplar)
+        reach = max(2, round(_BAND * depth))
         laying = Laying(
-            canvas, exemplar, image, lattice, sites, depth=depth, reach=max(2, round(_BAND * depth)), seed=seed
+            canvas, growth.exemplar, growth.image, lattice, growth.sites, depth=depth, reach=reach, seed=growth.seed
         )
-        laying.run(report)
+        laying.run(growth.report)
         canvas.label[laying.band] = -1
         seconds = {"placement": time.perf_counter() - start}
-        bare = canvas.bare(sites)
-        grown = self.fill.grow(canvas, exemplar, image, domain, sites=bare, seed=seed, report=report)
-        return Grown(grown.energy, growth.added(seconds, grown.seconds), grown.stopped, len(laying.pieces))
+        grown = self.fill.grow(replace(growth, sites=growth.bare))
+        return replace(grown, seconds=added(seconds, grown.seconds), patches=len(laying.pieces))
 
     def depth_for(self, exemplar: Exemplar) -> int:
         """Texels: as asked, or the window of Shin & Shin, section 3: twice the sample's dominant scale."""
