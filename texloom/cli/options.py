@@ -29,7 +29,7 @@ Method = Annotated[str | None, typer.Option(metavar="NAME", help=f"{', '.join(ME
 Search = Annotated[str | None, typer.Option(metavar="NAME", help=f"{', '.join(SEARCHES[:-1])} or {SEARCHES[-1]}.")]
 Preset = Annotated[str | None, typer.Option(metavar="KEY", help=f"A paper's own parameters: {', '.join(PRESETS)}.")]
 Order = Annotated[str | None, typer.Option(metavar="NAME", help=f"With refine: {' or '.join(ORDERS)}.")]
-Window = Annotated[int | None, typer.Option(metavar="N", help="With refine: texels a side that are compared.")]
+Window = Annotated[int | None, typer.Option(metavar="N", help="With refine: texels a side of what is kept together.")]
 Pitch = Annotated[int | None, typer.Option(metavar="N", help="With refine in scan-line order: texels between seeds.")]
 Passes = Annotated[int | None, typer.Option(metavar="N", help="With refine: passes at most.")]
 Threshold = Annotated[

@@ -52,7 +52,8 @@ class Refine:
     """
 
     order: Order = "parallel"
-    window: int | None = None  # texels a side; None: twice the dominant scale
+    # Texels a side: of what scan lines compare; of the narrowest blocks in parallel. None: twice the dominant scale.
+    window: int | None = None
     pitch: int | None = None  # texels between seed points; None: the dominant scale
     passes: int = 10
     threshold: float = 0.01  # stop when a pass changes less than this (eq. 1); 0 never does
