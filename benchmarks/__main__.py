@@ -7,7 +7,7 @@ from pathlib import Path
 
 from benchmarks.data import DATA
 
-PAGES = ("picture", "refine", "fill", "speed", "table1")
+PAGES = ("picture", "refine", "fill", "speed", "table1", "textons")
 
 
 def main() -> None:

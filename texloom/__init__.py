@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from texloom.domain.faces import Faces as Faces
     from texloom.domain.grid import Grid as Grid
     from texloom.domain.surface import Surface as Surface
     from texloom.domain.surface import texel_for_repeats as texel_for_repeats
@@ -26,12 +27,19 @@ if TYPE_CHECKING:
     from texloom.output.filled import filled_maps as filled_maps
     from texloom.output.gather import gather_images as gather_images
     from texloom.output.image import write_images as write_images
+    from texloom.output.sample_uv import on_sample as on_sample
+    from texloom.output.sample_uv import write_sample_uv as write_sample_uv
+    from texloom.output.textons_file import load_textons as load_textons
+    from texloom.output.textons_file import save_textons as save_textons
+    from texloom.search.textons import Textons as Textons
+    from texloom.search.textons import learn_textons as learn_textons
     from texloom.sources import SourceMap as SourceMap
     from texloom.synthesis.boundary import BoundarySampling as BoundarySampling
     from texloom.synthesis.fill import fill as fill
     from texloom.synthesis.least_squares import LeastSquares as LeastSquares
     from texloom.synthesis.optimize import Optimize as Optimize
     from texloom.synthesis.patches import PatchSampling as PatchSampling
+    from texloom.synthesis.quilting import Quilting as Quilting
     from texloom.synthesis.refine import Refine as Refine
     from texloom.synthesis.refine_patches import RefinePatches as RefinePatches
     from texloom.synthesis.synthesize import synthesize as synthesize
@@ -42,43 +50,54 @@ __version__ = "0.1.0"
 _HOMES = {
     "BoundarySampling": "synthesis.boundary",
     "Exemplar": "exemplar.exemplar",
+    "Faces": "domain.faces",
     "Grid": "domain.grid",
     "LeastSquares": "synthesis.least_squares",
     "Mesh": "mesh.mesh",
     "Optimize": "synthesis.optimize",
     "PatchSampling": "synthesis.patches",
+    "Quilting": "synthesis.quilting",
     "Refine": "synthesis.refine",
     "RefinePatches": "synthesis.refine_patches",
     "SourceMap": "sources",
     "Surface": "domain.surface",
+    "Textons": "search.textons",
     "fill": "synthesis.fill",
     "filled_maps": "output.filled",
     "from_array": "exemplar.exemplar",
     "fuse": "fusion.fuse",
     "gather_images": "output.gather",
     "join": "exemplar.join",
+    "learn_textons": "search.textons",
+    "load_textons": "output.textons_file",
+    "on_sample": "output.sample_uv",
     "read_exemplar": "io.stack",
     "read_mesh": "io.mesh",
+    "save_textons": "output.textons_file",
     "score": "metrics.score",
     "smoothest": "field.smooth",
     "synthesize": "synthesis.synthesize",
     "texel_for_repeats": "domain.surface",
     "through_arrows": "field.smooth",
     "write_images": "output.image",
+    "write_sample_uv": "output.sample_uv",
 }
 
 __all__ = [
     "BoundarySampling",
     "Exemplar",
+    "Faces",
     "Grid",
     "LeastSquares",
     "Mesh",
     "Optimize",
     "PatchSampling",
+    "Quilting",
     "Refine",
     "RefinePatches",
     "SourceMap",
     "Surface",
+    "Textons",
     "__version__",
     "fill",
     "filled_maps",
@@ -86,14 +105,19 @@ __all__ = [
     "fuse",
     "gather_images",
     "join",
+    "learn_textons",
+    "load_textons",
+    "on_sample",
     "read_exemplar",
     "read_mesh",
+    "save_textons",
     "score",
     "smoothest",
     "synthesize",
     "texel_for_repeats",
     "through_arrows",
     "write_images",
+    "write_sample_uv",
 ]
 
 

@@ -33,11 +33,11 @@ def fails_in_one_line(arguments: list[object], capsys: Captured) -> str:
 def test_help_lists_the_commands(capsys: Captured) -> None:
     assert command.main([]) == 0
     out = capsys.readouterr().out
-    for name in ("image", "surface", "apply", "inspect", "score", "demo"):
+    for name in ("image", "surface", "apply", "textons", "inspect", "score", "demo"):
         assert f"  {name} " in out
 
 
-@pytest.mark.parametrize("name", ["image", "surface", "apply", "inspect", "score", "demo"])
+@pytest.mark.parametrize("name", ["image", "surface", "apply", "textons", "inspect", "score", "demo"])
 def test_every_command_explains_itself(name: str, capsys: Captured) -> None:
     assert command.main([name, "--help"]) == 0
     assert "Usage: texloom " + name in capsys.readouterr().out

@@ -38,7 +38,7 @@ def run(folder: Path, *words: object) -> int:
         (["-o", "a.png"], "a.png: --as atlas is written as .glb or .obj"),
         (["-o", "a.ply", "--as", "atlas"], "a.ply: --as atlas is written as .glb or .obj"),
         (["-o", "a.obj", "--as", "vertex"], "a.obj: --as vertex is written as .glb or .ply"),
-        (["-o", "a.glb", "--as", "voxels"], "unknown home 'voxels': choose vertex or atlas"),
+        (["-o", "a.glb", "--as", "voxels"], "unknown home 'voxels': choose vertex, atlas or sample-uv"),
         (["-o", "a.glb", "--texel", "-1"], "a texel of -1 world units"),
         (["-o", "a.glb", "--symmetry", "3"], "symmetry 3 is not offered: choose 1, 2, 4 or 6"),
         (["-o", "a.glb", "--direction", "1,2"], "a vector has 3 numbers"),

@@ -5,11 +5,12 @@ import pytest
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import eigsh, spsolve
 
-from tests.meshes import sphere, torus
+from tests.meshes import flat_square, joined, octahedron, shifted, sphere, torus
 from texloom.field import multigrid
 from texloom.field.laplacian import connection_laplacian
 from texloom.field.multigrid import Multigrid, plus_diagonal, principal_block
 from texloom.field.transport import Transport
+from texloom.mesh.mesh import Mesh
 
 
 @pytest.fixture
@@ -58,6 +59,21 @@ def test_smallest_has_the_least_energy(small_levels):
     found = Multigrid(matrix).smallest(mesh.vertex_areas, mesh.vertex_parts, start)
     energy = np.vdot(found, matrix @ found).real / np.sum(mesh.vertex_areas * np.abs(found) ** 2)
     np.testing.assert_allclose(energy, least, rtol=0.03)
+
+
+@pytest.mark.parametrize("order", [1, 4])
+def test_powers_of_the_inverse_are_those_of_plain_iteration(order):
+    """Parts of all sizes at once, whose scales differ by many powers of ten."""
+    tiny = Mesh(1e-5 * np.eye(3), np.array([[0, 1, 2]], np.int32))
+    mesh = joined(sphere(3), shifted(torus(60, 12), (1e4, 0.0, 0.0)), octahedron(), flat_square(24), tiny)
+    area = np.bincount(mesh.vertex_parts, weights=mesh.vertex_areas)[mesh.vertex_parts]
+    matrix = plus_diagonal(connection_laplacian(Transport(mesh), order), 1e-3 * mesh.vertex_areas / area)
+    start = np.exp(1j * np.arange(len(mesh.vertices)) ** 2)
+    system = Multigrid(matrix)
+    expected = system._iterate(start, mesh.vertex_areas, mesh.vertex_parts, multigrid._INVERSE_STEPS)
+    found = system.smallest(mesh.vertex_areas, mesh.vertex_parts, start)
+    largest = np.array([np.abs(expected[mesh.vertex_parts == part]).max() for part in range(5)])[mesh.vertex_parts]
+    np.testing.assert_allclose(found / largest, expected / largest, atol=1e-7)
 
 
 def test_unknowns_without_couplings_are_solved_too(small_levels):

@@ -7,6 +7,7 @@ import pytest
 
 from tests.meshes import octahedron
 from texloom.errors import FileError
+from texloom.io import obj
 from texloom.io.obj import read_obj
 from texloom.io.off import read_off
 from texloom.io.ply import read_ply
@@ -114,6 +115,47 @@ def test_obj_counts_back_from_where_the_face_stands():
 def test_obj_lines_that_cannot_be_meant_are_named(line, said):
     with pytest.raises(FileError, match=said):
         read_obj(b"v 0 0 0\nv 1 0 0\nv 0 1 0\n" + line + b"\nf 1 2 3\n")
+
+
+SQUARE = b"v 0 0 0.5\nv 1 0 0.5\nv 1 1 -1e-3\nv 0 1 0.25\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "at_one_go"),
+    [
+        (SQUARE + b"f 1 2 3\nf 1 3 4\n", True),
+        (SQUARE + b"f 1 2 3 4\n", True),
+        (SQUARE + b"f -4 -3 -2\nf 1 3 -1", True),
+        (SQUARE.replace(b"\n", b" 1.0\r\n") + b"f 1 2 3\r\n\r\n", True),
+        (b"# a square\n\no square\n" + SQUARE + b"vn 0 0 1\n\ns off\ng\nf 1 2 3\n# its end", True),
+        (SQUARE + b"f 1 2 3\nf 1 2 3 4\n", False),
+        (SQUARE + b"f 1 2 3\nv 2 2 2\nf 1 2 -1\n", False),
+        (SQUARE + b"f 1 2 \\\n3\n", False),
+        (SQUARE + b"# is it \\\nv 9 9 9\nf 1 2 3\n", False),
+        (SQUARE + b"# is it \rv 9 9 9\nf 1 2 3\n", False),
+        (SQUARE + b"vt 0 0\nf 1/1 2/1 3/1\n", False),
+        (SQUARE + b"usemtl moss\nf 1 2 3\n", False),
+        (SQUARE, False),
+    ],
+)
+def test_obj_read_at_one_go_is_obj_read_by_lines(text, at_one_go, monkeypatch):
+    read = read_obj(text)
+    assert (obj._plain(text) is not None) == at_one_go
+    monkeypatch.setattr(obj, "_plain", lambda content: None)
+    by_lines = read_obj(text)
+    for one, other in ((read.vertices, by_lines.vertices), (read.faces, by_lines.faces), (read.uv, by_lines.uv)):
+        assert (one is None) == (other is None)
+        np.testing.assert_array_equal(one, other, strict=True)
+    np.testing.assert_array_equal(read.material, by_lines.material, strict=True)
+    assert read.materials == by_lines.materials
+
+
+@pytest.mark.parametrize(
+    "line", [b"f 1 2 5", b"f 1 2 0", b"f -5 1 2", b"f 1 2 99999999999999999999", b"v 1 2", b"f 1 2"]
+)
+def test_obj_of_one_wrong_line_is_not_read_at_one_go(line):
+    text = line + b"\n" + SQUARE + b"f 1 2 3\n" if line[:1] == b"v" else SQUARE + b"f 1 2 3\n" + line
+    assert obj._plain(text) is None
 
 
 def test_off_with_comments_and_colours():

@@ -7,6 +7,7 @@ from tests.meshes import all_meshes, closed_meshes, flat_square, joined, octahed
 from texloom.errors import MeshError
 from texloom.mesh.mend import mend
 from texloom.mesh.mesh import Mesh, edge_runs
+from texloom.mesh.weld import weld
 
 each_mesh = pytest.mark.parametrize("mesh", all_meshes().values(), ids=all_meshes().keys())
 
@@ -127,6 +128,19 @@ def test_folded_duplicate_and_unused_are_dropped():
         "dropped 2 duplicate faces",
     )
     np.testing.assert_array_equal(mended.face_origin, 1 + np.arange(len(mesh.faces)))
+
+
+def test_two_faces_back_to_back_are_one():
+    mesh = octahedron()
+    vertices = np.concatenate([mesh.vertices, mesh.vertices[:3] + 5])
+    mended = mend(vertices, np.concatenate([mesh.faces, [[6, 7, 8], [7, 6, 8]]]))
+    assert mended.mends == ("dropped 1 duplicate face",)
+    np.testing.assert_array_equal(mended.face_origin, np.arange(9))
+
+
+def test_a_vertex_falls_to_an_exact_copy_that_no_face_uses():
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 0], [1, 0, 0]], np.float64)
+    np.testing.assert_array_equal(weld(vertices, np.array([[3, 1, 2]], np.int32)), [0, 1, 2, 0, 1])
 
 
 def test_a_face_without_area_is_taken_out_without_opening_the_surface():

@@ -25,8 +25,14 @@ def test_twins_equal_the_naive_ones(mesh):
 @each_mesh
 def test_twins_do_not_depend_on_how_edges_are_sorted(mesh):
     shift = 2**31 - 2 - int(mesh.faces.max())
-    huge = Mesh(mesh.vertices, (mesh.faces.astype(np.int64) + shift).astype(np.int32))  # keys too wide to pack
+    huge = Mesh(mesh.vertices, (mesh.faces.astype(np.int64) + shift).astype(np.int32))  # too many to count
     np.testing.assert_array_equal(huge.twins, mesh.twins)
+
+
+@each_mesh
+def test_edges_come_in_one_order_however_they_are_sorted(mesh):
+    for few, many in zip(edge_runs(mesh.faces), edge_runs(1000 * mesh.faces + 7), strict=True):
+        np.testing.assert_array_equal(few, many)
 
 
 @each_mesh
@@ -53,6 +59,24 @@ def test_edge_runs_count_the_faces_of_each_edge():
     np.testing.assert_array_equal(counts, [3, 1, 1, 1, 1, 1, 1])
     np.testing.assert_array_equal(order[:3], [0, 3, 6])
     np.testing.assert_array_equal(starts, [0, 3, 4, 5, 6, 7, 8])
+
+
+@each_mesh
+def test_fans_are_walked_around_counter_clockwise(mesh):
+    tails = mesh.faces.reshape(-1)
+    met = [mesh.first_halfedges[mesh.first_halfedges >= 0]]
+    for here, following in mesh.fan_steps:
+        np.testing.assert_array_equal(tails[following], tails[here])
+        incoming = here - here % 3 + (here + 2) % 3
+        np.testing.assert_array_equal(mesh.twins[incoming], following)
+        met.append(following)
+    np.testing.assert_array_equal(np.sort(np.concatenate(met)), np.arange(len(tails)))
+    assert mesh.agrees
+
+
+@pytest.mark.parametrize("faces", [[[0, 1, 2], [1, 0, 3], [0, 1, 4]], [[0, 1, 2], [0, 1, 3]]])
+def test_faces_that_do_not_agree(faces):
+    assert not Mesh(np.eye(5, 3), np.array(faces, np.int32)).agrees
 
 
 @each_mesh

@@ -68,15 +68,15 @@ def bring_home(grown: Grown, output: Path, *, home: str, atlas: AtlasWish, setti
     """Write the textured mesh."""
     if home == "vertex":
         written = write_vertex_colours(output, grown.sites, grown.sources, grown.exemplar, settings=settings)
-        return Homecoming([written], _coloured(grown))
-    uv, whose = _choose_uv(grown, atlas)
+        return Homecoming([written], coloured_skin(grown.sources, grown.exemplar))
     mesh = grown.model.mesh
+    size = atlas.size or fitting_size(float(grown.surface.area.sum(dtype=np.float64)))
+    uv, whose = choose_uv(grown.model, atlas, size)
     tangents = corner_tangents(mesh.vertices, mesh.faces, uv, normals=mesh.vertex_normals[mesh.faces])
-    size = atlas.size or _fitting_size(grown.surface)
     laid = lay_atlas(grown.sites, uv, size=size, gutter=atlas.gutter, tangents=tangents)
     maps = bake(grown.sources, laid, grown.exemplar.maps)
-    files = _write_mesh(output, grown.model, maps, uv, tangents, fresh=whose != "own", settings=settings)
-    return Homecoming(files, _baked(maps, uv, tangents), f"{whose}, {size}×{size}", laid)
+    files = write_mesh(output, grown.model, maps, uv, tangents, fresh=whose != "own", settings=settings)
+    return Homecoming(files, baked_skin(maps, uv, tangents), f"{whose}, {size}×{size}", laid)
 
 
 def picture(grown: Grown, skin: Skin) -> UInt8[np.ndarray, "row column 3"]:
@@ -93,9 +93,9 @@ def write_preview(path: Path, grown: Grown, skin: Skin) -> Path:
     return write_image(path, to_map(picture(grown, skin), "colour"))
 
 
-def _choose_uv(grown: Grown, wish: AtlasWish) -> tuple[Float[np.ndarray, "face 3 2"], str]:
-    """The mesh's own UVs where they can take a texture, else new ones; and which."""
-    own = grown.model.uv
+def choose_uv(model: Model, wish: AtlasWish, size: int) -> tuple[Float[np.ndarray, "face 3 2"], str]:
+    """The mesh's own UVs where they can take a texture, else new ones for ``size`` texels a side; and which."""
+    own = model.uv
     if own is not None and not wish.fresh:
         diagnosis = diagnose_uv(own)
         if diagnosis.usable:
@@ -103,16 +103,16 @@ def _choose_uv(grown: Grown, wish: AtlasWish) -> tuple[Float[np.ndarray, "face 3
         reason = f"fresh atlas because {'; '.join(diagnosis.problems)}"
     else:
         reason = "fresh atlas"
-    return unwrap(grown.model.mesh, size=wish.size or _fitting_size(grown.surface), gutter=wish.gutter), reason
+    return unwrap(model.mesh, size=size, gutter=wish.gutter), reason
 
 
-def _fitting_size(surface: Surface) -> int:
-    """The power of two at which an atlas texel is about a texel of the sample."""
-    side = sqrt(float(surface.area.sum(dtype=np.float64)) / _FILLED)
+def fitting_size(area: float) -> int:
+    """The power of two at which an atlas texel is about a texel of the sample; ``area`` of the surface, in those."""
+    side = sqrt(area / _FILLED)
     return min(max(2 ** ceil(log2(max(side, 1.0))), _SMALLEST), _LARGEST)
 
 
-def _write_mesh(
+def write_mesh(
     output: Path,
     model: Model,
     maps: Mapping[str, Map],
@@ -135,13 +135,15 @@ def _write_mesh(
     return write_textured(output, textured, maps, settings=settings)
 
 
-def _coloured(grown: Grown) -> Skin:
+def coloured_skin(sources: SourceMap, exemplar: Exemplar) -> Skin:
     """What vertex colours look like."""
-    base = base_colour(grown.exemplar.maps) or next(iter(grown.exemplar.maps))
-    return Skin(colours=linear_rgba(gather_sites(grown.sources, grown.exemplar.maps[base]))[:, :3])
+    base = base_colour(exemplar.maps) or next(iter(exemplar.maps))
+    return Skin(colours=linear_rgba(gather_sites(sources, exemplar.maps[base]))[:, :3])
 
 
-def _baked(maps: Mapping[str, Map], uv: Float[np.ndarray, "face 3 2"], tangents: Float[np.ndarray, "face 3 4"]) -> Skin:
+def baked_skin(
+    maps: Mapping[str, Map], uv: Float[np.ndarray, "face 3 2"], tangents: Float[np.ndarray, "face 3 4"]
+) -> Skin:
     """What the atlas looks like."""
     image = maps[base_colour(maps) or next(iter(maps))].image
     colours = linear_rgba(image.reshape(-1, image.shape[2]))[:, :3].reshape(*image.shape[:2], 3)

@@ -8,6 +8,8 @@ from typing import Annotated, Any
 import typer
 
 from texloom.cli import options
+from texloom.cli.library import SUFFIX as TEXTONS
+from texloom.cli.library import facts_of, list_library, textons_in
 from texloom.cli.session import Session
 from texloom.errors import FileError, ParameterError
 
@@ -16,7 +18,10 @@ def inspect(
     context: typer.Context,
     file: Annotated[
         Path,
-        typer.Argument(metavar="FILE", help="An image, a folder of maps, a mesh, saved sources or a saved analysis."),
+        typer.Argument(
+            metavar="FILE",
+            help="An image, a folder of maps, a mesh, saved sources, a saved analysis, textons or a folder of them.",
+        ),
     ],
     material: Annotated[str | None, typer.Option(metavar="NAME", help="Look at this material of a mesh only.")] = None,
     report: Annotated[
@@ -29,11 +34,18 @@ def inspect(
         raise FileError(f"{file}: no such file or folder")
     options.check_report(report)
     options.check_output(report)
-    if report is not None and file.suffix.lower() in (*options.MESH_SUFFIXES, ".npz"):
+    if report is not None and file.suffix.lower() in (*options.MESH_SUFFIXES, ".npz", TEXTONS):
         raise ParameterError(f"--report tells of a sample, and {file.name} is none: give an image or a folder of maps")
     with Session(as_json=as_json) as session, session.stage("read"):
         if file.suffix.lower() in options.MESH_SUFFIXES:
             session.finish(_describe_mesh(file, material))
+        elif file.suffix.lower() == TEXTONS:
+            from texloom.output.textons_file import read_entry
+
+            session.finish(facts_of(read_entry(file)))
+        elif file.is_dir() and (library := textons_in(file)):
+            facts, table = list_library(library)
+            session.finish(facts, text=table)
         elif file.is_file() and zipfile.is_zipfile(file):
             session.finish(_describe_archive(file))
         elif file.suffix.lower() == ".npz":

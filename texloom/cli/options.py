@@ -12,6 +12,8 @@ from texloom.errors import ParameterError
 METHODS = ("optimize", "patches", "refine", "refine-patches")
 SEARCHES = ("exhaustive", "pca", "pca-tree", "pca-clusters", "clusters")
 PRESETS = ("resampling", "refine")
+SURFACE_METHODS = (*METHODS, "texton")
+SURFACE_PRESETS = (*PRESETS, "texton")
 PRESET_METHODS = {"resampling": METHODS[:2], "refine": METHODS[2:]}  # those that the paper has, its own first
 ORDERS = ("parallel", "scan-line")
 DEVICES = ("cpu", "cuda")
@@ -26,8 +28,14 @@ Sample = Annotated[
     Path, typer.Argument(metavar="SAMPLE", help="An image, or a folder of maps (basecolor.png, normal.png, ...).")
 ]
 Method = Annotated[str | None, typer.Option(metavar="NAME", help=f"{', '.join(METHODS[:-1])} or {METHODS[-1]}.")]
+SurfaceMethod = Annotated[
+    str | None, typer.Option("--method", metavar="NAME", help=f"{', '.join(METHODS)} or {SURFACE_METHODS[-1]}.")
+]
 Search = Annotated[str | None, typer.Option(metavar="NAME", help=f"{', '.join(SEARCHES[:-1])} or {SEARCHES[-1]}.")]
 Preset = Annotated[str | None, typer.Option(metavar="KEY", help=f"A paper's own parameters: {', '.join(PRESETS)}.")]
+SurfacePreset = Annotated[
+    str | None, typer.Option("--preset", metavar="KEY", help=f"A paper's own parameters: {', '.join(SURFACE_PRESETS)}.")
+]
 Order = Annotated[str | None, typer.Option(metavar="NAME", help=f"With refine: {' or '.join(ORDERS)}.")]
 Window = Annotated[int | None, typer.Option(metavar="N", help="With refine: texels a side of what is kept together.")]
 Pitch = Annotated[int | None, typer.Option(metavar="N", help="With refine in scan-line order: texels between seeds.")]

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float32, Shaped
 
 from texloom.cli.guides import on_mesh
-from texloom.cli.reapply import SURFACE, check_sample
+from texloom.cli.reapply import ATLAS, SURFACE, check_sample
 from texloom.domain.patches import Patches
 from texloom.domain.surface import Surface
 from texloom.errors import FileError, ParameterError
@@ -24,6 +24,7 @@ from texloom.output.material import base_colour
 from texloom.output.sources_file import SavedSources
 
 _WIDTH = 24  # texels: side of the patches that are looked at, and from one to the next
+_AGAIN = "texture the mesh --as vertex and score that .glb"
 _INSTEAD = "score the .glb that --as vertex writes, or the file that --sources saves"
 
 
@@ -74,6 +75,8 @@ def from_sources(saved: SavedSources, exemplar: Exemplar, name: str) -> Painted:
     """
     check_sample(saved, exemplar, name)
     sites = {key.removeprefix(SURFACE): array for key, array in saved.domain.items() if key.startswith(SURFACE)}
+    if not sites and any(key.startswith(ATLAS) for key in saved.domain):
+        raise ParameterError(f"{name} holds what the texels of an atlas show, not where they lie: {_AGAIN}")
     if not sites:
         raise ParameterError(f"{name} does not say where its sites lie: grow the surface again with --sources")
     surface = _surface(
@@ -130,6 +133,8 @@ def _attributes(path: Path, document: Document) -> dict[str, np.ndarray]:
     """Vertex attributes that all primitives have, strung together as ``primitives`` counts vertices."""
     parts = primitives(document)
     shared = set.intersection(*(set(part.attributes) for part in parts))
+    if "_UV_A" in shared:
+        raise ParameterError(f"{path.name} shows the sample itself, face by face: {_AGAIN}")
     for kind, what in (("COLOR_0", "vertex colours"), ("TANGENT", "direction field")):
         if kind not in shared:
             raise ParameterError(f"{path.name} carries no {what}: {_INSTEAD}")

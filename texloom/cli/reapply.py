@@ -1,7 +1,7 @@
 """Saved sources: what is kept with them, and how they are shown with other stacks."""
 
 from collections.abc import Sequence
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from texloom.domain.surface import Surface
     from texloom.output.atlas import Atlas
 
-_ATLAS, SURFACE = "atlas.", "surface."
+ATLAS, SURFACE = "atlas.", "surface."
 
 
 def image_domain(rows: int, columns: int, exemplar: Exemplar) -> dict[str, np.ndarray]:
@@ -34,9 +34,21 @@ def surface_domain(surface: "Surface", atlas: "Atlas | None", exemplar: Exemplar
         "texel": np.array(surface.texel),
         "symmetry": np.array(surface.field.order),
     }
-    laid = {} if atlas is None else {name: values for name, values in vars(atlas).items() if values is not None}
     kept = _samples(exemplar) | {SURFACE + name: values for name, values in sites.items()}
-    return kept | {_ATLAS + name: values for name, values in laid.items()}
+    return kept if atlas is None else kept | _laid(atlas)
+
+
+def atlas_domain(atlas: "Atlas", exemplar: Exemplar) -> dict[str, np.ndarray]:
+    """What sources are kept with that each belong to a texel of an atlas."""
+    count = len(atlas.sites)
+    own = np.repeat(np.arange(count, dtype=np.int32)[:, None], 3, axis=1)
+    alone = np.broadcast_to(np.array([1, 0, 0], np.float32), (count, 3))
+    still = np.zeros((count, 3, 2), np.float32)
+    return _samples(exemplar) | _laid(replace(atlas, sites=own, barycentric=alone, offsets=still))
+
+
+def _laid(atlas: "Atlas") -> dict[str, np.ndarray]:
+    return {ATLAS + name: values for name, values in vars(atlas).items() if values is not None}
 
 
 def rejoin(saved: SavedSources, stacks: Sequence[Exemplar], name: str) -> Joined:
@@ -59,7 +71,7 @@ def reapply(saved: SavedSources, exemplar: Exemplar, name: str) -> dict[str, Map
     if "rows" in saved.domain:
         rows, columns = int(saved.domain["rows"]), int(saved.domain["columns"])
         return gather_images(saved.sources, exemplar, rows=rows, columns=columns)
-    laid = {name.removeprefix(_ATLAS): array for name, array in saved.domain.items() if name.startswith(_ATLAS)}
+    laid = {name.removeprefix(ATLAS): array for name, array in saved.domain.items() if name.startswith(ATLAS)}
     if not laid:
         raise ParameterError(f"{name} holds sources of vertex colours: grow the surface again with --as atlas")
     from texloom.output.atlas import Atlas, bake

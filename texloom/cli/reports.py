@@ -22,7 +22,7 @@ from texloom.output.preview import Skin
 from texloom.output.report import Account, Figure, fitted
 from texloom.synthesis.result import Result
 
-_LARGE, _SMALL = 1024, 384  # pixels, the longest side of the main pictures and of the others
+LARGE, _SMALL = 1024, 384  # pixels, the longest side of the main pictures and of the others
 _COMPARED = 65_536  # patches of a picture, those of 256×256 texels: more take long and hardly change the scores
 _COLOURS = "Where each texel of the sample lies, as a colour"
 _ORIGIN = "Where in the sample each texel comes from; red where copied pieces meet"
@@ -45,11 +45,11 @@ def of_image(run: Run, grid: Grid, maps: Mapping[str, Map]) -> Account:
     theirs, ours = run.exemplar.maps[name], maps[name]
     figures = {
         "Sample": sample_figures(run.exemplar),
-        "Result": [Figure(fitted(stored(ours, 8), _LARGE), f"{name}, {grid.columns}×{grid.rows} texels")],
+        "Result": [Figure(fitted(stored(ours, 8), LARGE), f"{name}, {grid.columns}×{grid.rows} texels")],
         "Its other maps": [Figure(fitted(stored(maps[other], 8), _SMALL), other) for other in others],
         "Origin": [
-            Figure(fitted(_origin(run, grid), _LARGE), _ORIGIN),
-            Figure(fitted(_legend(run.exemplar), _LARGE), _COLOURS),
+            Figure(fitted(_origin(run, grid), LARGE), _ORIGIN),
+            Figure(fitted(_legend(run.exemplar), LARGE), _COLOURS),
         ],
     }
     try:
@@ -69,10 +69,10 @@ def of_surface(run: Run, grown: Grown, skin: Skin) -> Account:
     origin = Skin(colours=_site_origin(run, grown.surface), gloss=0.0)
     figures = {
         "Sample": sample_figures(run.exemplar),
-        "Result": [Figure(fitted(picture(grown, skin), _LARGE), f"{grown.model.path.name} from four sides, {sites}")],
+        "Result": [Figure(fitted(picture(grown, skin), LARGE), f"{grown.model.path.name} from four sides, {sites}")],
         "Origin": [
-            Figure(fitted(picture(grown, origin), _LARGE), _ORIGIN),
-            Figure(fitted(_legend(run.exemplar), _LARGE), _COLOURS),
+            Figure(fitted(picture(grown, origin), LARGE), _ORIGIN),
+            Figure(fitted(_legend(run.exemplar), LARGE), _COLOURS),
         ],
     }
     map = run.exemplar.maps[name]

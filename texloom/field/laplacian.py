@@ -37,7 +37,7 @@ def edge_weights(mesh: Mesh) -> Float64[np.ndarray, "edge"]:
     Slivers and obtuse pairs give weights that are huge, zero or negative, with which the energy is no measure of
     smoothness; within bounds the matrix is diagonally dominant on any mesh.
     """
-    opposite = np.roll(mesh.corner_angles, 1, axis=1)  # halfedge c faces corner c + 2
+    opposite = mesh.corner_angles.take([2, 0, 1], axis=1)  # halfedge c faces corner c + 2
     cotangents = 0.5 / np.tan(np.clip(opposite, 1e-6, np.pi - 1e-6))
     weights = np.bincount(mesh.halfedge_edges, weights=cotangents.ravel(), minlength=len(mesh.edges))
     return np.clip(weights, *_WEIGHT_RANGE)
@@ -46,10 +46,10 @@ def edge_weights(mesh: Mesh) -> Float64[np.ndarray, "edge"]:
 def _turn_along_edges(transport: Transport) -> Float64[np.ndarray, "edge"]:
     """The turn from the lower vertex of each edge to the higher one."""
     mesh = transport.mesh
-    tails, heads = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
     turns = np.empty(len(mesh.edges))
-    forward = tails < heads
+    is_forward = (mesh.faces < mesh.faces.take([1, 2, 0], axis=1)).ravel()
+    forward, backward = np.flatnonzero(is_forward), np.flatnonzero(~is_forward)
     along = transport.along_halfedge.ravel()
-    turns[mesh.halfedge_edges[~forward]] = -along[~forward]
+    turns[mesh.halfedge_edges[backward]] = -along[backward]
     turns[mesh.halfedge_edges[forward]] = along[forward]
     return turns

@@ -8,13 +8,17 @@ solving took 1.0 s of CPU time, ordering (nested dissection) and factoring the s
 Sums run in a fixed order, so that the result is the same for any number of threads.
 """
 
+import sys
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jaxtyping import Bool, Complex128, Float64, Int32
 
 from texloom import draws
+from texloom.field.lanczos import iterated_inverse, normalized
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -62,7 +66,7 @@ class Multigrid:
         Among equally smooth vectors the result is near the one nearest to ``start``.
         """
         if self._prolongation is None:
-            return self._iterate(start, mass, part, _INVERSE_STEPS)
+            return iterated_inverse(self._factor, start, mass=mass, part=part, steps=_INVERSE_STEPS)
         first = np.full(self._lumps, len(part), np.int64)
         columns, rows = _entries(self._prolongation)
         np.minimum.at(first, columns, rows)
@@ -88,11 +92,11 @@ class Multigrid:
         self, vector: Complex128[np.ndarray, "n"], mass: Float64[np.ndarray, "n"], part: np.ndarray, steps: int
     ) -> Complex128[np.ndarray, "n"]:
         """Inverse power iteration, every part at unit length of its own."""
-        vector = _normalized(vector, mass, part)
+        vector = normalized(vector, mass, part)
         for _ in range(steps):
             energy = max(_dot(vector, self.matrix @ vector).real / _dot(vector, mass * vector).real, 1e-300)
             right = mass * vector
-            vector = _normalized(self.solve(right, start=vector / energy, tolerance=1e-3), mass, part)
+            vector = normalized(self.solve(right, start=vector / energy, tolerance=1e-3), mass, part)
         return vector
 
 
@@ -110,20 +114,34 @@ def plus_diagonal(matrix: "csr_array", diagonal: Float64[np.ndarray, "n"]) -> "c
 
 def one_thread() -> AbstractContextManager[object]:
     """BLAS at one thread: its pool only slows the small blocks of a sparse factorisation down."""
+    controller = _blas_controller("scipy.linalg" in sys.modules)
+    return nullcontext() if controller is None else controller.limit(limits=1, user_api="blas")
+
+
+@cache
+def _blas_controller(scipy_loaded: bool) -> Any:
+    """Finding the BLAS libraries takes as long as a small solve, so once, and again when SciPy has brought its own."""
     try:
-        from threadpoolctl import threadpool_limits
+        from threadpoolctl import ThreadpoolController
     except ImportError:
-        return nullcontext()
-    return threadpool_limits(1, user_api="blas")
+        return None
+    return ThreadpoolController()
 
 
-def _factor(matrix: "csr_array"):
+def _factor(matrix: "csr_array") -> Callable[[np.ndarray], np.ndarray]:
     """The solving function of a small matrix."""
     from scipy.sparse.linalg import splu
 
     with one_thread():
-        factors = splu(matrix.tocsc(), permc_spec="COLAMD", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    return factors.solve
+        # Columns one by one: a surface's factors have few columns alike, and panels of them only cost
+        return splu(
+            matrix.tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            relax=1,
+            panel_size=1,
+            options={"SymmetricMode": True},
+        ).solve
 
 
 def _conjugate_gradients(
@@ -214,12 +232,6 @@ def _lumps(graph: "csr_array", root: Bool[np.ndarray, "n"]) -> tuple[np.ndarray,
 def _entries(matrix: "csr_array") -> tuple[np.ndarray, np.ndarray]:
     """Column and row of every stored entry."""
     return matrix.indices, np.repeat(np.arange(len(matrix.indptr) - 1), np.diff(matrix.indptr))
-
-
-def _normalized(vector: np.ndarray, mass: np.ndarray, part: np.ndarray) -> np.ndarray:
-    """Every part at length 1 under the mass."""
-    squared = np.bincount(part, weights=mass * np.abs(vector) ** 2)
-    return vector / np.sqrt(np.maximum(squared, 1e-300))[part]
 
 
 def _dot(a: np.ndarray, b: np.ndarray) -> complex:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Complex, Complex128, Float64, Int32
+from jaxtyping import Complex, Complex128, Float64
 
 from texloom.mesh.mesh import Mesh
 
@@ -46,8 +46,8 @@ class Transport:
 
         The bisector of the corner goes to the bisector, so that the scaling's error is halved on either side.
         """
-        inside = np.cumsum(np.pi - np.roll(self.mesh.corner_angles, -1, axis=1), axis=1)
-        halfedge_in_face = np.concatenate([np.zeros((len(inside), 1)), inside[:, :2]], axis=1)
+        _, b, c = self.mesh.corner_angles.T
+        halfedge_in_face = np.stack([np.zeros(len(b)), np.pi - b, np.pi - b + (np.pi - c)], axis=1)
         # bisector: (halfedge in face + angle / 2) − (halfedge in vertex + scaled angle / 2)
         return (
             halfedge_in_face - self.halfedge_angle_in_vertex + (self.mesh.corner_angles - self.scaled_corner_angle) / 2
@@ -58,7 +58,7 @@ class Transport:
         """The turn to add to a polar angle at a halfedge's start to carry it to the halfedge's end."""
         # At its end, the halfedge reversed is the far side of the next corner.
         reversed_angle = self.halfedge_angle_in_vertex + self.scaled_corner_angle
-        return np.roll(reversed_angle, -1, axis=1) + np.pi - self.halfedge_angle_in_vertex
+        return reversed_angle.take([1, 2, 0], axis=1) + np.pi - self.halfedge_angle_in_vertex
 
     @cached_property
     def holonomy(self) -> Float64[np.ndarray, "face"]:
@@ -70,15 +70,26 @@ class Transport:
 
     def to_corners(self, power: Complex[np.ndarray, "vertex"], order: int) -> Complex128[np.ndarray, "face 3"]:
         """Powers of directions at the vertices, as they are in the faces' frames."""
-        return power[self.mesh.faces] * np.exp(1j * order * self.vertex_to_face)
+        return power[self.mesh.faces] * self._corner_turns(order)
 
     def to_vertices(self, power: Complex[np.ndarray, "face 3"], order: int) -> Complex128[np.ndarray, "vertex"]:
         """Powers of directions at face corners, as one unit number a vertex: the direction of their sum (0 stays 0)."""
-        turned = (power * np.exp(-1j * order * self.vertex_to_face)).ravel()
+        turned = (power * np.conj(self._corner_turns(order))).ravel()
         index, count = self.mesh.faces.ravel(), len(self.mesh.vertices)
         total = 1j * np.bincount(index, weights=np.imag(turned), minlength=count)
         total += np.bincount(index, weights=np.real(turned), minlength=count)
         return unit(total)
+
+    def _corner_turns(self, order: int) -> Complex128[np.ndarray, "face 3"]:
+        """``vertex_to_face`` as unit numbers, of powers."""
+        turns = self._known_turns
+        if order not in turns:
+            turns[order] = np.exp(1j * order * self.vertex_to_face)
+        return turns[order]
+
+    @cached_property
+    def _known_turns(self) -> dict[int, np.ndarray]:
+        return {}
 
 
 def unit(values: Complex[np.ndarray, "*shape"]) -> Complex128[np.ndarray, "*shape"]:
@@ -88,29 +99,8 @@ def unit(values: Complex[np.ndarray, "*shape"]) -> Complex128[np.ndarray, "*shap
 
 
 def _polar_angles(mesh: Mesh, width: Float64[np.ndarray, "halfedge"]) -> Float64[np.ndarray, "halfedge"]:
-    """Polar angle of every halfedge at its start, when the corner after it is ``width`` wide.
-
-    All vertices are walked around at once, one corner a step: O(halfedges) work in as many steps as the highest
-    valence. A vertex on a boundary starts at it, any other at its lowest halfedge.
-    """
-    start = _first_halfedges(mesh)
+    """Polar angle of every halfedge at its start, 0 at ``first_halfedges``, when the corner after it is ``width``."""
     angle = np.zeros(len(width))
-    here = start[start >= 0]
-    stop = here
-    while len(here):
-        face, corner = np.divmod(here, 3)
-        following = mesh.twins[3 * face + (corner + 2) % 3]  # across the incoming side: counter-clockwise
-        goes_on = (following >= 0) & (following != stop)
-        angle[following[goes_on]] = angle[here[goes_on]] + width[here[goes_on]]
-        here, stop = following[goes_on], stop[goes_on]
+    for here, following in mesh.fan_steps:
+        angle[following] = angle[here] + width[here]
     return angle
-
-
-def _first_halfedges(mesh: Mesh) -> Int32[np.ndarray, "vertex"]:
-    """The halfedge that has polar angle 0 at each vertex, -1 for a vertex of no face."""
-    tails = mesh.faces.ravel()
-    first = np.full(len(mesh.vertices), -1, np.int32)
-    first[tails[::-1]] = np.arange(len(tails), dtype=np.int32)[::-1]
-    outer = np.flatnonzero(mesh.twins < 0).astype(np.int32)
-    first[tails[outer]] = outer
-    return first

@@ -1,10 +1,16 @@
-"""Wavefront OBJ: positions, texture coordinates at corners, polygons, material names."""
+"""Wavefront OBJ: positions, texture coordinates at corners, polygons, material names.
 
+Most files are positions, then polygons of one size, and little else: those are read at one go (``_plain``), all others
+line by line.
+"""
+
+import re
 from itertools import chain
 
 import numpy as np
 
 from texloom.errors import FileError
+from texloom.io.numbers import floats, integers, table
 from texloom.io.triangles import Triangles, fan
 
 _Numbered = list[tuple[int, list[bytes]]]  # (line of the file, its words)
@@ -15,6 +21,9 @@ def read_obj(content: bytes) -> Triangles:
 
     Raises: FileError, naming the line that cannot be meant.
     """
+    plain = _plain(content)
+    if plain is not None:
+        return plain
     positions: _Numbered = []
     coordinates: _Numbered = []
     polygons: _Numbered = []
@@ -57,6 +66,38 @@ def read_obj(content: bytes) -> Triangles:
         np.array(material_of_polygon, np.int32)[polygon],
         tuple(materials),
     )
+
+
+_PASSED_OVER = re.compile(rb"^(?:#|(?:vn|o|g|s|mtllib)\b).*(?:\n|\Z)|^[ \t]*\n", re.MULTILINE)
+_OF_NUMBERS = b"0123456789+-.eE \t\n"
+
+
+def _plain(content: bytes) -> Triangles | None:
+    """The triangles of a file of positions, then polygons of one size, with no more to a corner than its position.
+
+    None for any other file, right or wrong.
+    """
+    content = content.replace(b"\r\n", b"\n").strip()
+    if b"\r" in content or b"\\" in content:  # other ways to end a line, or not to
+        return None
+    keywords = content.translate(None, _OF_NUMBERS)
+    if keywords.strip(b"vf"):
+        content = _PASSED_OVER.sub(b"", content)
+        keywords = content.translate(None, _OF_NUMBERS)
+    positions, polygons = keywords.count(b"v"), keywords.count(b"f")
+    if not (positions and polygons) or keywords != b"v" * positions + b"f" * polygons:
+        return None
+    cut = content.index(b"f")
+    vertices = table(content[:cut], b"v", rows=positions, numbers=floats)
+    corners = table(content[cut:], b"f", rows=polygons, numbers=integers)
+    if vertices is None or corners is None or min(vertices.shape[1], corners.shape[1]) < 3:
+        return None
+    corners = np.where(corners < 0, positions + corners, corners - 1)
+    if corners.min() < 0 or corners.max() >= positions:
+        return None
+    triangles, _ = fan(np.full(polygons, corners.shape[1]))
+    faces = corners.reshape(-1)[triangles].astype(np.int32)
+    return Triangles(np.ascontiguousarray(vertices[:, :3]), faces, material=np.full(len(faces), -1, np.int32))
 
 
 _NONE = np.iinfo(np.int64).min  # a corner without texture coordinate

@@ -24,6 +24,8 @@ def fan(counts: Int[np.ndarray, "polygon"]) -> tuple[Int[np.ndarray, "triangle 3
 
     A polygon ``a b c d`` becomes ``a b c``, ``a c d``.
     """
+    if (counts == 3).all():
+        return np.arange(3 * len(counts)).reshape(-1, 3), np.arange(len(counts))
     polygon = np.repeat(np.arange(len(counts)), counts - 2)
     starts = np.cumsum(counts) - counts
     within = np.arange(len(polygon)) - np.repeat(np.cumsum(counts - 2) - (counts - 2), counts - 2)

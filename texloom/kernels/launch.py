@@ -92,10 +92,41 @@ def launch(kernel: Any, count: int, *, inputs: Sequence[Any], outputs: Sequence[
     parallel_map(run, len(bounds) - 1)
 
 
-def _share(kernel: Any, values: Sequence[Any], device: str = "cpu") -> list[Any]:
+class Repeated:
+    """A kernel launched again and again on the same arrays, where a launch each would cost more than its work.
+
+    ``inputs`` and ``outputs`` are shared with the kernel once; only the ``varying`` numbers between ``start`` and the
+    inputs differ from run to run. An item is a thread's whole share of the work, too little for an accelerator: it
+    runs on the CPU on any device.
+    """
+
+    def __init__(self, kernel: Any, varying: int, *, inputs: Sequence[Any], outputs: Sequence[Any]) -> None:
+        _load(kernel)
+        self._kernel, self._varying = kernel, varying
+        self._arguments = _share(kernel, (*inputs, *outputs), skip=1 + varying)
+        self._commands: list[Any] = []
+
+    def run(self, count: int, *numbers: int) -> None:
+        """Items ``0 .. count - 1``."""
+        assert len(numbers) == self._varying, f"{self._varying} numbers precede the inputs"
+        while len(self._commands) < count:
+            arguments = [len(self._commands), *numbers, *self._arguments]
+            command = wp.launch(self._kernel, dim=1, inputs=arguments, device="cpu", record_cmd=True)
+            self._commands.append(command)
+
+        def run(item: int) -> None:
+            command = self._commands[item]
+            for place, number in enumerate(numbers):
+                command.set_param_at_index(1 + place, number)
+            command.launch()
+
+        parallel_map(run, count)
+
+
+def _share(kernel: Any, values: Sequence[Any], device: str = "cpu", skip: int = 1) -> list[Any]:
     """Warp views of NumPy arrays, in the element type the kernel declares (vectors too); anything else as it is."""
     shared = []
-    for declared, value in zip(kernel.adj.args[1:], values, strict=True):
+    for declared, value in zip(kernel.adj.args[skip:], values, strict=True):
         if isinstance(value, np.ndarray):
             assert value.flags.c_contiguous, f"{declared.label}: kernels take C-contiguous arrays"
             value = wp.array(value, dtype=declared.type.dtype, copy=False, device=device)

@@ -9,15 +9,10 @@ _THINNEST = 1e-8  # height over the longest side below which a face has no area
 _MOST_PASSES = 30  # one suffices unless faces without area lie side by side
 
 
-def has_no_area(
-    vertices: Float64[np.ndarray, "vertex 3"], faces: Int32[np.ndarray, "face 3"]
-) -> Bool[np.ndarray, "face"]:
+def has_no_area(mesh: Mesh) -> Bool[np.ndarray, "face"]:
     """Whether a face's height is next to nothing against its longest side."""
-    corners = vertices[faces]
-    sides = np.roll(corners, -1, axis=1) - corners
-    longest = np.einsum("ijk,ijk->ij", sides, sides).max(axis=1)
-    doubled_area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
-    return doubled_area <= _THINNEST * longest
+    squared = [np.einsum("ij,ij->i", side, side) for side in mesh.sides]
+    return 2 * mesh.face_areas <= _THINNEST * np.maximum(np.maximum(squared[0], squared[1]), squared[2])
 
 
 def needles(
@@ -44,12 +39,12 @@ def flatten_away(
     """
     keep = np.ones(len(faces), bool)
     for _ in range(_MOST_PASSES):
-        flat = has_no_area(vertices, faces) & keep
+        flat = has_no_area(Mesh(vertices, faces)) & keep
         if not flat.any():
             break
         if not _flip_pass(vertices, faces, corners, origins, keep, flat):
             break
-    return keep & ~has_no_area(vertices, faces)
+    return keep & ~has_no_area(Mesh(vertices, faces))
 
 
 def _flip_pass(

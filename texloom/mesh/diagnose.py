@@ -87,7 +87,7 @@ def _loops(mesh: Mesh, boundary: np.ndarray) -> int:
 
 def _bowties(mesh: Mesh) -> int:
     """Vertices whose faces hang together in several fans, though no edge there is crowded."""
-    return split(mesh.vertices, mesh.faces).vertices
+    return split(mesh).vertices
 
 
 def _slivers(mesh: Mesh) -> int:

@@ -83,16 +83,16 @@ def parse_json(text: bytes) -> dict[str, Any]:
 
 def pack(document: Document) -> bytes:
     """One GLB of the parts; its first buffer becomes the binary chunk, and must be the only one."""
-    binary = document.binary + b"\0" * (-len(document.binary) % 4)
+    gap = b"\0" * (-len(document.binary) % 4)
     content = dict(document.json)
-    if binary:
+    if document.binary:
         content["buffers"] = [{**(content.get("buffers") or [{}])[0], "byteLength": len(document.binary)}]
     text = json.dumps(content, separators=(",", ":"), ensure_ascii=False).encode("utf-8")
     text += b" " * (-len(text) % 4)
-    chunks = struct.pack("<II", len(text), _JSON) + text
-    if binary:
-        chunks += struct.pack("<II", len(binary), _BINARY) + binary
-    return struct.pack("<III", _MAGIC, 2, 12 + len(chunks)) + chunks
+    chunks = [struct.pack("<II", len(text), _JSON), text]
+    if document.binary:
+        chunks += [struct.pack("<II", len(document.binary) + len(gap), _BINARY), document.binary, gap]
+    return b"".join([struct.pack("<III", _MAGIC, 2, 12 + sum(map(len, chunks))), *chunks])
 
 
 def primitives(document: Document) -> list[Primitive]:

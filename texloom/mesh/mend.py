@@ -1,6 +1,6 @@
 """Mending a mesh without guessing: every mend is counted and said, what cannot be mended is refused."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float, Int, Int32
@@ -11,8 +11,6 @@ from texloom.mesh.mesh import Mesh
 from texloom.mesh.orient import orient
 from texloom.mesh.split import split
 from texloom.mesh.weld import weld
-
-_HASH = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)  # odd, with mixed bits
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,12 +34,22 @@ class _Draft:
     corners: np.ndarray  # given corner (3 · face + corner) at each corner
     origins: np.ndarray  # given face
     mends: list[str]
+    mesh: Mesh = field(init=False)  # over ``faces``, made anew when they change: what it knows serves every step
+
+    def __post_init__(self) -> None:
+        self.mesh = Mesh(self.vertices, self.faces)
+
+    def change(self, faces: np.ndarray) -> None:
+        """Take other faces."""
+        self.faces = faces
+        self.mesh = Mesh(self.vertices, faces)
 
     def keep(self, kept: np.ndarray) -> int:
         """Keep some faces; returns how many were dropped."""
         dropped = len(kept) - int(kept.sum())
         if dropped:
-            self.faces, self.corners, self.origins = self.faces[kept], self.corners[kept], self.origins[kept]
+            self.corners, self.origins = self.corners[kept], self.origins[kept]
+            self.change(self.faces[kept])
         return dropped
 
     def say(self, count: int, did: str, what: str, how: str = "") -> None:
@@ -84,8 +92,8 @@ def check(vertices: Float[np.ndarray, "vertex 3"], faces: Int[np.ndarray, "face 
             f"face {face} (counted from 0) names vertex {int(faces[face, corner])} (counted from 0), "
             f"but the mesh has {counted(len(vertices), 'vertex')}"
         )
-    finite = np.isfinite(vertices).all(axis=1)
-    if not finite.all():
+    if not np.isfinite(vertices).all():
+        finite = np.isfinite(vertices).all(axis=1)
         vertex = int(np.argmin(finite))
         position = ", ".join(f"{value:g}" for value in vertices[vertex])
         raise MeshError(
@@ -96,10 +104,11 @@ def check(vertices: Float[np.ndarray, "vertex 3"], faces: Int[np.ndarray, "face 
 
 def _draft(vertices: np.ndarray, faces: np.ndarray) -> _Draft:
     count = len(faces)
+    given = np.array(faces, np.int32)
     return _Draft(
-        np.ascontiguousarray(vertices, np.float64),
-        np.array(faces, np.int32),
-        np.array(faces, np.int32),
+        np.array(vertices, np.float64, order="C"),
+        given,
+        given,
         np.arange(3 * count, dtype=np.int32).reshape(count, 3),
         np.arange(count, dtype=np.int32),
         [],
@@ -112,7 +121,8 @@ def _weld(draft: _Draft) -> None:
     used[draft.faces] = True
     welded = int((used & (lowest != np.arange(len(lowest)))).sum())
     unused = int((~used).sum())
-    draft.faces = lowest[draft.faces]
+    if welded:
+        draft.change(lowest[draft.faces])
     draft.say(welded, "welded", "duplicate vertex")
     draft.say(unused, "dropped", "unreferenced vertex")
 
@@ -125,10 +135,10 @@ def _drop_folded(draft: _Draft) -> int:
 
 def _drop_duplicates(draft: _Draft) -> int:
     """Keep the first of the faces over the same three vertices, whichever way round they run."""
+    a, b, c = (draft.mesh.twins.reshape(-1, 3) // 3).T  # the face across each side
+    if draft.mesh.agrees and not (((a == b) | (a == c)) & (a >= 0) | (b == c) & (b >= 0)).any():
+        return 0  # nor do any two share all three sides
     ordered = np.sort(draft.faces, axis=1)
-    hashes = np.sort(ordered.astype(np.uint64) @ _HASH)
-    if (hashes[1:] != hashes[:-1]).all():
-        return 0
     order = np.lexsort(ordered.T)
     repeats = np.zeros(len(ordered), bool)
     repeats[order[1:]] = (ordered[order[1:]] == ordered[order[:-1]]).all(axis=1)
@@ -136,33 +146,42 @@ def _drop_duplicates(draft: _Draft) -> int:
 
 
 def _orient(draft: _Draft) -> None:
-    flip = orient(draft.vertices, draft.faces)
-    draft.faces[flip] = draft.faces[flip][:, [0, 2, 1]]
+    flip = orient(draft.mesh)
+    if not flip.any():
+        return
     draft.corners[flip] = draft.corners[flip][:, [0, 2, 1]]
+    draft.change(np.where(flip[:, None], draft.faces[:, [0, 2, 1]], draft.faces))
     draft.say(int(flip.sum()), "turned over", "face")
 
 
 def _flatten(draft: _Draft) -> None:
     """Take faces without area out of the surface without opening it."""
-    flat = has_no_area(draft.vertices, draft.faces)
+    flat = has_no_area(draft.mesh)
     if flat.all():
         raise MeshError(f"all {len(draft.given)} faces are degenerate (they have no area): there is nothing to texture")
     if not flat.any():
         return
-    for lower, higher in needles(draft.vertices, draft.faces):
-        draft.faces[draft.faces == higher] = lower
+    faces = draft.faces.copy()
+    for lower, higher in needles(draft.vertices, faces):
+        faces[faces == higher] = lower
+    draft.change(faces)
     _drop_folded(draft)
     _drop_duplicates(draft)
-    draft.keep(flatten_away(draft.vertices, draft.faces, draft.corners, draft.origins))
+    faces = draft.faces.copy()
+    kept = flatten_away(draft.vertices, faces, draft.corners, draft.origins)
+    draft.change(faces)
+    draft.keep(kept)
     draft.say(int(flat.sum()), "removed", "face", " without area")
 
 
 def _split(draft: _Draft) -> Mended:
-    parted = split(draft.vertices, draft.faces)
+    parted = split(draft.mesh)
     draft.say(parted.cuts, "cut one-sided (non-orientable) parts open along", "edge")
     draft.say(parted.edges, "split", "non-manifold edge")
     draft.say(parted.vertices, "split", "non-manifold vertex")
-    mesh = Mesh(draft.vertices[parted.origin], parted.faces)
+    mesh = draft.mesh
+    if len(parted.origin) != len(mesh.vertices) or not np.array_equal(parted.faces, mesh.faces):
+        mesh = Mesh(draft.vertices[parted.origin], parted.faces)
     return Mended(mesh, draft.given.reshape(-1)[draft.corners], draft.origins, draft.corners, tuple(draft.mends))
 
 

@@ -1,36 +1,26 @@
 """Turning faces over until neighbours agree."""
 
 import numpy as np
-from jaxtyping import Bool, Float64, Int, Int32
+from jaxtyping import Bool
 
-from texloom.mesh.mesh import edge_runs
+from texloom.mesh.mesh import Mesh
 
 
-def orient(vertices: Float64[np.ndarray, "vertex 3"], faces: Int32[np.ndarray, "face 3"]) -> Bool[np.ndarray, "face"]:
+def orient(mesh: Mesh) -> Bool[np.ndarray, "face"]:
     """Which faces to turn over so that faces agree across every edge of two faces.
 
     A part that already agrees is left as it is. One that does not keeps the side most of its faces show, or shows
     its outside if it is closed. Edges of three faces and more tie nothing together.
     """
-    first, second, disagree = face_pairs(faces)
-    if not disagree.any():
-        return np.zeros(len(faces), bool)
-    side, twin_side = _sides(len(faces), first, second, disagree)
+    first, second, opposite = mesh.edge_pairs
+    if opposite.all():
+        return np.zeros(len(mesh.faces), bool)
+    first, second, disagree = first // 3, second // 3, ~opposite
+    side, twin_side = _sides(len(mesh.faces), first, second, disagree)
     one_sided = side == twin_side
-    flip = ~_kept_side(vertices, faces, first, second, side, twin_side)
-    flip[one_sided] = _spread(len(faces), first, second, disagree, np.flatnonzero(one_sided))
+    flip = ~_kept_side(mesh.vertices, mesh.faces, first, second, side, twin_side)
+    flip[one_sided] = _spread(len(mesh.faces), first, second, disagree, np.flatnonzero(one_sided))
     return flip
-
-
-def face_pairs(
-    faces: Int32[np.ndarray, "face 3"],
-) -> tuple[Int[np.ndarray, "pair"], Int[np.ndarray, "pair"], Bool[np.ndarray, "pair"]]:
-    """The two faces of every edge that has exactly two, and whether they run along it the same way."""
-
-    order, starts, counts = edge_runs(faces)
-    first, second = order[starts[counts == 2]], order[starts[counts == 2] + 1]
-    tails = faces.reshape(-1)
-    return first // 3, second // 3, tails[first] == tails[second]
 
 
 def _sides(count: int, first: np.ndarray, second: np.ndarray, disagree: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float64, Int32
+from jaxtyping import Int32
 
-from texloom.mesh.mesh import edge_runs
+from texloom.mesh.mesh import Mesh, edge_runs
 
 _MOST_AROUND_AN_EDGE = 16  # faces; beyond, they are all parted
 
@@ -22,12 +22,17 @@ class Split:
     vertices: int  # vertices of several fans that lay on no such edge
 
 
-def split(vertices: Float64[np.ndarray, "vertex 3"], faces: Int32[np.ndarray, "face 3"]) -> Split:
+def split(mesh: Mesh) -> Split:
     """Part faces where more than two meet, and give every fan of corners its own vertex.
 
     Of the faces around a crowded edge the flattest pairs that run opposite ways stay joined, ties to the lowest faces.
     """
-    twins, crowded, cut = _joined(vertices, faces)
+    faces = mesh.faces
+    if mesh.agrees and _one_fan_each(mesh):
+        used = mesh.first_halfedges >= 0
+        numbers = (np.cumsum(used) - 1).astype(np.int32)
+        return Split(numbers[faces], np.flatnonzero(used).astype(np.int32), 0, 0, 0)
+    twins, crowded, cut = _joined(mesh)
     fans = _fans(twins, faces)
     while crowded or cut:  # parted faces may still hang together at both ends of their edge
         doubled = _doubled_edges(fans, twins)
@@ -40,21 +45,22 @@ def split(vertices: Float64[np.ndarray, "vertex 3"], faces: Int32[np.ndarray, "f
     return Split(fans.reshape(-1, 3), origin, len(crowded), len(cut), _bowties(faces, origin, [*crowded, *cut]))
 
 
-def _joined(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, list[int], list[int]]:
-    """Twin of every halfedge (-1: none), and a halfedge of each crowded edge and of each edge run the same way."""
-    order, starts, counts = edge_runs(faces)
-    tails = faces.reshape(-1)
-    twins = np.full(faces.size, -1, np.int32)
-    first, second = order[starts[counts == 2]], order[starts[counts == 2] + 1]
-    opposite = tails[first] != tails[second]
-    twins[first[opposite]] = second[opposite]
-    twins[second[opposite]] = first[opposite]
+def _one_fan_each(mesh: Mesh) -> bool:
+    """Whether walking around every vertex once meets all corners."""
+    starts = int((mesh.first_halfedges >= 0).sum())
+    return starts + sum(len(following) for _, following in mesh.fan_steps) == mesh.faces.size
 
+
+def _joined(mesh: Mesh) -> tuple[np.ndarray, list[int], list[int]]:
+    """Twin of every halfedge (-1: none), and a halfedge of each crowded edge and of each edge run the same way."""
+    order, starts, counts = mesh.edge_runs
+    twins = mesh.twins.copy()
     crowded = np.flatnonzero(counts > 2)
     for edge in crowded:
         around = np.sort(order[starts[edge] : starts[edge] + counts[edge]])
         if len(around) <= _MOST_AROUND_AN_EDGE:
-            _join_flattest(twins, vertices, faces, around)
+            _join_flattest(twins, mesh.vertices, mesh.faces, around)
+    first, _, opposite = mesh.edge_pairs
     return twins, [int(h) for h in order[starts[crowded]]], [int(h) for h in first[~opposite]]
 
 

@@ -12,12 +12,15 @@ def weld(vertices: Float64[np.ndarray, "vertex 3"], faces: Int32[np.ndarray, "fa
 
     Vertices that no face uses are left alone. Closeness is passed on: a chain of close vertices is one point.
     """
-    exact = _lowest_copy(vertices)
+    exact = np.arange(len(vertices), dtype=np.int32)
+    tolerance = _tolerance(vertices, faces)
+    crowded = _crowded(vertices, exact, tolerance)
+    if len(crowded) == 0:
+        return exact
+    exact[crowded] = crowded[_lowest_copy(vertices[crowded])]
     used = np.zeros(len(vertices), bool)
     used[exact[faces]] = True
-    points = np.flatnonzero(used)
-    tolerance = _tolerance(vertices, exact[faces])
-    crowded = points[_crowded(vertices[points], tolerance)]
+    crowded = _crowded(vertices, crowded[used[crowded]], tolerance)
     if len(crowded) == 0:
         return exact
     close = _lowest_close(vertices, crowded, tolerance)
@@ -37,24 +40,25 @@ def _lowest_copy(vertices: np.ndarray) -> np.ndarray:
 
 def _tolerance(vertices: np.ndarray, faces: np.ndarray) -> float:
     """Distance below which two vertices are one, in world units."""
-    tails, heads = vertices[faces[:, 0]], vertices[faces[:, 1]]  # one side of each face is sample enough
-    extent = np.maximum(tails, heads).max(axis=0) - np.minimum(tails, heads).min(axis=0)
-    edges = np.linalg.norm(heads - tails, axis=1)
+    tails, heads = (vertices.take(corner, axis=0) for corner in faces[:, :2].T)  # one side a face is sample enough
+    extent = np.array([np.ptp(np.concatenate(ends)) for ends in zip(tails.T, heads.T, strict=True)])
+    edges = heads - tails
+    edges = np.sqrt(np.einsum("ij,ij->i", edges, edges))
     edges = edges[edges > 0]
     return min(_TOLERANCE * float(np.linalg.norm(extent)), _LEAST_EDGE * float(np.median(edges))) if len(edges) else 0.0
 
 
-def _crowded(points: np.ndarray, tolerance: float) -> np.ndarray:
-    """Whether a point may have another within the tolerance: some coordinate close by on every axis."""
-    crowded = np.ones(len(points), bool)
-    for values in points.T:
-        order = np.argsort(values)
-        close = np.diff(values[order]) <= tolerance
+def _crowded(vertices: np.ndarray, points: np.ndarray, tolerance: float) -> np.ndarray:
+    """The points that may have another within the tolerance: among them some coordinate is close by on every axis."""
+    for values in vertices.T:
+        here = values[points]
+        order = np.argsort(here)
+        close = np.diff(here[order]) <= tolerance
         on_axis = np.zeros(len(points), bool)
         on_axis[order[1:][close]] = True
         on_axis[order[:-1][close]] = True
-        crowded &= on_axis
-    return crowded
+        points = points[on_axis]
+    return points
 
 
 def _lowest_close(vertices: np.ndarray, crowded: np.ndarray, tolerance: float) -> np.ndarray:

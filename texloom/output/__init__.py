@@ -6,4 +6,6 @@
 ``uv``            whether UVs can take a texture       ``vertex_colours``  PLY or GLB of the refined mesh
 ``preview``       pictures without a display           ``sources_file``    sources kept for later
 ``debug``         where the texture comes from         ``atomic``          files that appear whole or not at all
+``sample_uv``     GLB or OBJ on the sample itself      ``blending``        neighbours' maps, edge errors, which show
+``edge_picture``  edges in the colour of their error   ``blended_atlas``   the blend baked
 """

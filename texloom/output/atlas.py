@@ -1,7 +1,7 @@
 """An atlas: which place on the surface every texel shows, and maps baked through it."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float, Float32, Float64, Int32
@@ -10,7 +10,7 @@ from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Map
 from texloom.kernels import raster as kernels
 from texloom.kernels.launch import launch
-from texloom.output.gather import gather_points
+from texloom.output.gather import gather_points, gather_sites
 from texloom.output.gutter import fill, nearest_texels
 from texloom.output.rows import face_rows, texel_corners
 from texloom.output.sites import SurfaceSites
@@ -19,6 +19,7 @@ from texloom.sources import SourceMap
 
 _TOUCH = 0.7072  # texels from a centre to a corner: a face that touches a texel owns it if no other covers its centre
 _LARGEST = 16384  # texels a side
+_BLOCK = 1 << 20  # texels whose sources are held at once
 _NO_TANGENTS = np.zeros((1, 3, 4), np.float32)
 
 
@@ -77,17 +78,48 @@ def bake(sources: SourceMap, atlas: Atlas, maps: Mapping[str, Map]) -> dict[str,
 
     Vectors of normal maps are turned from the sites' frames into the tangent frame of the atlas.
     """
-    return {name: Map(_bake_map(sources, atlas, map), map.kind, map.bits) for name, map in maps.items()}
-
-
-def _bake_map(sources: SourceMap, atlas: Atlas, map: Map) -> Float32[np.ndarray, "row column channel"]:
-    if map.kind == "normal" and atlas.frame_turn is None:
-        raise ParameterError("normal maps need the atlas's tangents: lay the atlas with tangents=")
     points = {"barycentric": atlas.barycentric, "offsets": atlas.offsets, "frame_turn": atlas.frame_turn}
-    values = gather_points(sources, map, atlas.sites, **points)
-    if map.kind == "normal" and atlas.handed is not None:
-        values[:, 1] = 0.5 + (values[:, 1] - 0.5) * atlas.handed
-    return fill(values, atlas.nearest)
+    return _baked(atlas, maps, lambda map: gather_points(sources, map, atlas.sites, **points))
+
+
+def bake_texels(sources_of: Callable[[slice], SourceMap], atlas: Atlas, maps: Mapping[str, Map]) -> dict[str, Map]:
+    """Like ``bake``, with sources for the covered texels themselves, each in the frame of its first corner's site.
+
+    ``sources_of`` is asked for a run of texels at a time.
+    """
+
+    def values(map: Map) -> Float32[np.ndarray, "texel channel"]:
+        found = np.empty((len(atlas.sites), map.image.shape[2]), np.float32)
+        for first in range(0, len(found), _BLOCK):
+            run = slice(first, first + _BLOCK)
+            found[run] = gather_sites(_into_tangents(sources_of(run), atlas, run), map)
+        return found
+
+    return _baked(atlas, maps, values)
+
+
+def _into_tangents(sources: SourceMap, atlas: Atlas, run: slice) -> SourceMap:
+    """The sources turned further, from the sites' frames into the atlas's."""
+    if atlas.frame_turn is None:
+        return sources
+    frame = atlas.frame_turn[run, :1]
+    turn = np.broadcast_to(frame, sources.weight.shape) if sources.turn is None else sources.turn + frame
+    return replace(sources, turn=turn)
+
+
+def _baked(
+    atlas: Atlas, maps: Mapping[str, Map], values_of: Callable[[Map], Float32[np.ndarray, "texel channel"]]
+) -> dict[str, Map]:
+    """Values of the covered texels as images, vectors of mirrored charts mirrored, gutters filled."""
+    baked = {}
+    for name, map in maps.items():
+        if map.kind == "normal" and atlas.frame_turn is None:
+            raise ParameterError("normal maps need the atlas's tangents: lay the atlas with tangents=")
+        values = values_of(map)
+        if map.kind == "normal" and atlas.handed is not None:
+            values[:, 1] = 0.5 + (values[:, 1] - 0.5) * atlas.handed
+        baked[name] = Map(fill(values, atlas.nearest), map.kind, map.bits)
+    return baked
 
 
 def _owners(corners: Float64[np.ndarray, "face 3 2"], size: int) -> Int32[np.ndarray, "row column"]:

@@ -13,15 +13,21 @@ from texloom.mesh.gltf import Document, pack
 _COMPONENTS = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126}
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 _VERTICES, _INDICES = 34962, 34963  # buffer view targets
-_LINEAR, _MIPMAPS, _REPEAT = 9729, 9987, 10497
+_LINEAR, _MIPMAPS, _REPEAT, _CLAMP = 9729, 9987, 10497, 33071
 
 
 class Draft:
-    """Starts empty or from a document, whose binary part stays as it is: what is new comes behind it."""
+    """Starts empty or from a document, whose binary part stays as it is: what is new comes behind it.
 
-    def __init__(self, document: Document | None = None) -> None:
+    New textures repeat, or with ``clamp`` end in their outermost texels. Arrays are not copied: they must stay as they
+    are until the document is packed.
+    """
+
+    def __init__(self, document: Document | None = None, *, clamp: bool = False) -> None:
+        self._wrap = _CLAMP if clamp else _REPEAT
         self.json: dict[str, Any] = copy.deepcopy(document.json) if document else {"asset": {"version": "2.0"}}
-        self._binary = bytearray(document.binary if document else b"")
+        self._binary: list[Any] = [document.binary] if document else []
+        self._length = len(document.binary) if document else 0
 
     def add(self, kind: str, entry: dict[str, Any]) -> int:
         """Append to one of the document's lists ("materials", "nodes", ...); the index there."""
@@ -34,12 +40,13 @@ class Draft:
         values = np.ascontiguousarray(values)
         row = values.dtype.itemsize * values.shape[1]
         stride = -(-row // 4) * 4
-        padded = np.zeros((len(values), stride), np.uint8)
-        padded[:, :row] = values.view(np.uint8).reshape(len(values), row)
         view: dict[str, Any] = {"target": _VERTICES}
+        content = values
         if stride != row:
             view["byteStride"] = stride
-        entry = self._described(values, self._view(padded.tobytes(), view))
+            content = np.zeros((len(values), stride), np.uint8)
+            content[:, :row] = values.view(np.uint8).reshape(len(values), row)
+        entry = self._described(values, self._view(content, view))
         if normalized:
             entry["normalized"] = True
         return self.add("accessors", entry)
@@ -47,12 +54,12 @@ class Draft:
     def indices(self, faces: Shaped[np.ndarray, "face 3"]) -> int:
         """Triangle corners as unsigned 32-bit integers."""
         flat = np.ascontiguousarray(faces, "<u4").reshape(-1, 1)
-        return self.add("accessors", self._described(flat, self._view(flat.tobytes(), {"target": _INDICES})))
+        return self.add("accessors", self._described(flat, self._view(flat, {"target": _INDICES})))
 
     def texture(self, png: bytes, name: str) -> int:
-        """A repeating, mipmapped texture of a PNG kept inside the document."""
+        """A mipmapped texture of a PNG kept inside the document."""
         image = self.add("images", {"name": name, "mimeType": "image/png", "bufferView": self._view(png, {})})
-        sampler = {"magFilter": _LINEAR, "minFilter": _MIPMAPS, "wrapS": _REPEAT, "wrapT": _REPEAT}
+        sampler = {"magFilter": _LINEAR, "minFilter": _MIPMAPS, "wrapS": self._wrap, "wrapT": self._wrap}
         samplers = self.json.setdefault("samplers", [])
         if sampler not in samplers:
             samplers.append(sampler)
@@ -64,13 +71,15 @@ class Draft:
         asset["generator"] = f"texloom {version()}"
         if settings:
             asset.setdefault("extras", {})["texloom"] = dict(settings)
-        return pack(Document(self.json, bytes(self._binary)))
+        return pack(Document(self.json, b"".join(self._binary)))
 
-    def _view(self, content: bytes, entry: dict[str, Any]) -> int:
+    def _view(self, content: bytes | np.ndarray, entry: dict[str, Any]) -> int:
         """A buffer view of new bytes, on a border of four."""
-        self._binary += b"\0" * (-len(self._binary) % 4)
-        described = {"buffer": 0, "byteOffset": len(self._binary), "byteLength": len(content), **entry}
-        self._binary += content
+        size = content.nbytes if isinstance(content, np.ndarray) else len(content)
+        gap = -self._length % 4
+        self._binary += [b"\0" * gap, content]
+        described = {"buffer": 0, "byteOffset": self._length + gap, "byteLength": size, **entry}
+        self._length += gap + size
         return self.add("bufferViews", described)
 
     @staticmethod
@@ -82,7 +91,8 @@ class Draft:
             "count": len(values),
         }
         if len(values):
-            entry |= {"min": values.min(axis=0).tolist(), "max": values.max(axis=0).tolist()}
+            along = np.ascontiguousarray(values.T)  # a hundred times as fast as column by column
+            entry |= {"min": along.min(axis=1).tolist(), "max": along.max(axis=1).tolist()}
         return entry
 
 

@@ -1,6 +1,7 @@
 """A stack of maps as a glTF material: base colour in sRGB, occlusion, roughness and metal packed, normals OpenGL."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -10,33 +11,58 @@ from texloom.output.draft import Draft
 from texloom.output.image import stored
 from texloom.output.png import png_bytes
 
+_PACKED = "occlusion-roughness-metallic"
+
+
+class MaterialMaps(Mapping[str, Map]):
+    """Maps that many files show: what a glTF material holds of them is encoded once, for the first of these files.
+
+    Anywhere else they are the maps they were made of.
+    """
+
+    def __init__(self, maps: Mapping[str, Map]) -> None:
+        self._maps = dict(maps)
+
+    def __getitem__(self, name: str) -> Map:
+        return self._maps[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._maps)
+
+    def __len__(self) -> int:
+        return len(self._maps)
+
+    @cached_property
+    def textures(self) -> dict[str, bytes]:
+        """The PNG of each texture by its name, in the order a file holds them."""
+        return {name: _png(map) for name, map in _shown(self._maps).items()}
+
 
 def add_material(draft: Draft, maps: Mapping[str, Map], *, name: str = "texloom", uv_set: int = 0) -> int:
     """Append the material and its textures. Maps glTF has no place for ("height", ...) become extra textures.
 
     Red of the packed texture is occlusion, green roughness, blue metal (glTF 2.0 §3.9.2); a missing map counts as 1,
-    1 and 0. The first colour map is the base colour if none is called "basecolor".
+    1 and 0. The first colour map is the base colour if none is called "basecolor". ``MaterialMaps`` are encoded once.
     """
+    textures = (maps if isinstance(maps, MaterialMaps) else MaterialMaps(maps)).textures
+    at = {texture: _reference(draft.texture(png, texture), uv_set) for texture, png in textures.items()}
     slots: dict[str, Any] = {}
     pbr: dict[str, Any] = {"metallicFactor": 1.0 if "metallic" in maps else 0.0}
     pbr["roughnessFactor"] = 1.0 if "roughness" in maps else 0.9
-    base = base_colour(maps)
+    base, normal = base_colour(maps), _normal(maps)
     if base is not None:
-        pbr["baseColorTexture"] = _slot(draft, _with_alpha(maps[base], maps.get("alpha")), base, uv_set)
-    packed = _packed(maps)
-    if packed is not None:
-        texture = _slot(draft, packed, "occlusion-roughness-metallic", uv_set)
-        if "roughness" in maps or "metallic" in maps:
-            pbr["metallicRoughnessTexture"] = texture
-        if "ao" in maps:
-            slots["occlusionTexture"] = texture
-    for normal in (name for name, map in maps.items() if map.kind == "normal"):
-        slots.setdefault("normalTexture", _slot(draft, maps[normal], normal, uv_set))
+        pbr["baseColorTexture"] = at[base]
+    if "roughness" in maps or "metallic" in maps:
+        pbr["metallicRoughnessTexture"] = at[_PACKED]
+    if "ao" in maps:
+        slots["occlusionTexture"] = at[_PACKED]
+    if normal is not None:
+        slots["normalTexture"] = at[normal]
     if "emissive" in maps:
-        slots |= {"emissiveTexture": _slot(draft, maps["emissive"], "emissive", uv_set), "emissiveFactor": [1, 1, 1]}
+        slots |= {"emissiveTexture": at["emissive"], "emissiveFactor": [1, 1, 1]}
     if "alpha" in maps:
         slots["alphaMode"] = "BLEND"
-    extra = {name: _slot(draft, maps[name], name, uv_set) for name in maps if name not in _placed(maps, base)}
+    extra = {name: at[name] for name in maps if name not in _placed(maps)}
     if extra:
         slots["extras"] = {"texloom": extra}
     return draft.add("materials", {"name": name, "pbrMetallicRoughness": pbr, **slots})
@@ -51,16 +77,34 @@ def base_colour(maps: Mapping[str, Map]) -> str | None:
     return next(iter(colours + others), None)
 
 
-def _placed(maps: Mapping[str, Map], base: str | None) -> set[str]:
+def _shown(maps: Mapping[str, Map]) -> dict[str, Map]:
+    """The maps as textures show them, by the textures' names."""
+    shown: dict[str, Map] = {}
+    base, packed, normal = base_colour(maps), _packed(maps), _normal(maps)
+    if base is not None:
+        shown[base] = _with_alpha(maps[base], maps.get("alpha"))
+    if packed is not None:
+        shown[_PACKED] = packed
+    own = [name for name in (normal, "emissive") if name is not None and name in maps]
+    others = [name for name in maps if name not in _placed(maps)]
+    return shown | {name: maps[name] for name in own + others}
+
+
+def _placed(maps: Mapping[str, Map]) -> set[str | None]:
     """Maps that have a slot of their own."""
-    normals = [name for name, map in maps.items() if map.kind == "normal"][:1]
-    return {"ao", "roughness", "metallic", "emissive", "alpha", *normals, *([base] if base else [])}
+    return {"ao", "roughness", "metallic", "emissive", "alpha", _normal(maps), base_colour(maps)}
 
 
-def _slot(draft: Draft, map: Map, name: str, uv_set: int) -> dict[str, Any]:
-    image = stored(map, 8 if map.bits == 8 else 16)
-    reference = {"index": draft.texture(png_bytes(image, srgb=map.kind == "colour"), name)}
-    return reference | ({"texCoord": uv_set} if uv_set else {})
+def _normal(maps: Mapping[str, Map]) -> str | None:
+    return next((name for name, map in maps.items() if map.kind == "normal"), None)
+
+
+def _reference(texture: int, uv_set: int) -> dict[str, int]:
+    return {"index": texture} | ({"texCoord": uv_set} if uv_set else {})
+
+
+def _png(map: Map) -> bytes:
+    return png_bytes(stored(map, 8 if map.bits == 8 else 16), srgb=map.kind == "colour")
 
 
 def _with_alpha(map: Map, alpha: Map | None) -> Map:

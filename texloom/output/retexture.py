@@ -9,10 +9,10 @@ from jaxtyping import Float, Shaped
 from texloom.exemplar.exemplar import Map
 from texloom.mesh.gltf import Document, Primitive, accessor, primitives, unpack
 from texloom.mesh.model import Model
-from texloom.output.corners import shared_corners
+from texloom.output.corners import shared_corners, unshared_corners
 from texloom.output.draft import Draft
 from texloom.output.material import add_material
-from texloom.output.textured import flipped
+from texloom.output.textured import add_further, flipped
 
 
 def retextured_glb(
@@ -21,6 +21,8 @@ def retextured_glb(
     *,
     uv: Float[np.ndarray, "face 3 2"] | None = None,
     tangents: Float[np.ndarray, "face 3 4"] | None = None,
+    further: Mapping[str, Shaped[np.ndarray, "face 3 n"]] | None = None,
+    clamp: bool = False,
     settings: Mapping[str, str] | None = None,
 ) -> bytes:
     """The model's file with its textured primitives on the baked maps.
@@ -29,11 +31,13 @@ def retextured_glb(
     along; without, the file's own first UV set is used and only the material changes (and TANGENT, where given, in
     world space). Nodes, transforms, skins, animations, other materials and all other data stay byte for byte. Colours
     at vertices would tint the maps: they are kept under the name ``_COLOR_0``. A mesh that several nodes show is
-    copied for each node that is textured.
+    copied for each node that is textured. ``further`` and ``clamp`` are those of a ``TexturedMesh``; further
+    attributes need ``uv``, and make every corner a vertex of its own.
     """
     assert model.document is not None and model.primitive is not None, "only a glTF model can be retextured"
+    assert uv is not None or not further, "further attributes come with new UVs"
     document = unpack(model.document)
-    draft = Draft(document)
+    draft = Draft(document, clamp=clamp)
     material = _add_material_like(draft, document, model, maps)
     for part in primitives(document):
         chosen = np.flatnonzero((model.primitive == (part.node, part.primitive)).all(axis=1))
@@ -49,7 +53,8 @@ def retextured_glb(
             if tangent is not None:
                 entry["attributes"]["TANGENT"] = draft.attribute(_at_vertices(tangent, corner, part.vertex_count))
         else:
-            _split(draft, document, entry, corner, uv[chosen].reshape(-1, 2), tangent)
+            beside = {name: values[chosen] for name, values in (further or {}).items()}
+            _split(draft, document, entry, corner, uv[chosen].reshape(-1, 2), tangent, beside)
     return draft.packed(settings or {})
 
 
@@ -84,9 +89,13 @@ def _split(
     corner: Shaped[np.ndarray, "corner"],
     uv: Float[np.ndarray, "corner 2"],
     tangent: Float[np.ndarray, "corner 4"] | None,
+    further: Mapping[str, Shaped[np.ndarray, "face 3 n"]],
 ) -> None:
-    """New vertices, one for each (old vertex, UV), with every attribute of the old vertex and the new UV."""
-    first, vertex = shared_corners(corner, uv)
+    """New vertices, one for each (old vertex, UV), with every attribute of the old vertex and the new UV.
+
+    With further attributes it is one for each corner.
+    """
+    first, vertex = unshared_corners(len(corner)) if further else shared_corners(corner, uv)
     old = corner[first]
     entry["attributes"] = _carried(draft, document, entry["attributes"], old)
     if "targets" in entry:
@@ -95,6 +104,7 @@ def _split(
     entry["attributes"].pop("TANGENT", None)
     if tangent is not None:
         entry["attributes"]["TANGENT"] = draft.attribute(tangent[first].astype("<f4"))
+    entry["attributes"] |= add_further(draft, further)
     entry["indices"] = draft.indices(vertex.reshape(-1, 3))
     entry.pop("mode", None)  # strips and fans are triangles now
 

@@ -2,16 +2,16 @@
 
 from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float, Int, Shaped
 
 from texloom.errors import FileError
 from texloom.exemplar.exemplar import Map
 from texloom.output.atomic import atomic
-from texloom.output.corners import shared_corners
+from texloom.output.corners import shared_corners, unshared_corners
 from texloom.output.draft import Draft, version
 from texloom.output.image import stored
 from texloom.output.material import add_material, base_colour
@@ -23,13 +23,19 @@ _MTL = {"alpha": "map_d", "height": "disp", "roughness": "map_Pr", "metallic": "
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TexturedMesh:
-    """A mesh on an atlas: UVs (v up) and, for normal maps, the glTF tangents they were baked in, both at corners."""
+    """A mesh on a texture: UVs (v up) and, for normal maps, the glTF tangents they are meant in, both at corners.
+
+    ``further`` are attributes of a GLB by their name there (``_NAME``), at corners too; unsigned bytes stand for
+    [0, 1]. ``clamp``: the texture ends in its outermost texels, instead of repeating.
+    """
 
     vertices: Float[np.ndarray, "vertex 3"]
     faces: Int[np.ndarray, "face 3"]
     normals: Float[np.ndarray, "vertex 3"]
     uv: Float[np.ndarray, "face 3 2"]
     tangents: Float[np.ndarray, "face 3 4"] | None = None
+    further: Mapping[str, Shaped[np.ndarray, "face 3 n"]] = field(default_factory=dict)
+    clamp: bool = False
 
 
 def write_textured(
@@ -47,20 +53,24 @@ def write_textured(
 
 
 def textured_glb(mesh: TexturedMesh, maps: Mapping[str, Map], *, settings: Mapping[str, str] | None = None) -> bytes:
-    """The mesh and its maps as one GLB. Vertices are split where a corner's UV or tangent differs."""
-    draft = Draft()
+    """The mesh and its maps as one GLB. Vertices are split where a corner's UV or tangent differs.
+
+    With ``further`` attributes every corner is a vertex of its own.
+    """
+    draft = Draft(clamp=mesh.clamp)
     flat = mesh.faces.reshape(-1)
     keys = [flat, mesh.uv.reshape(-1, 2)]
     if mesh.tangents is not None:
         keys.append(mesh.tangents.reshape(-1, 4))
-    first, vertex = shared_corners(*keys)
+    first, vertex = unshared_corners(len(flat)) if mesh.further else shared_corners(*keys)
     attributes = {
-        "POSITION": draft.attribute(mesh.vertices[flat[first]].astype("<f4")),
-        "NORMAL": draft.attribute(mesh.normals[flat[first]].astype("<f4")),
-        "TEXCOORD_0": draft.attribute(flipped(mesh.uv.reshape(-1, 2)[first])),
+        "POSITION": draft.attribute(mesh.vertices.astype("<f4").take(flat[first], axis=0)),
+        "NORMAL": draft.attribute(mesh.normals.astype("<f4").take(flat[first], axis=0)),
+        "TEXCOORD_0": draft.attribute(flipped(mesh.uv.reshape(-1, 2).take(first, axis=0))),
     }
     if mesh.tangents is not None:
-        attributes["TANGENT"] = draft.attribute(mesh.tangents.reshape(-1, 4)[first].astype("<f4"))
+        attributes["TANGENT"] = draft.attribute(mesh.tangents.reshape(-1, 4).take(first, axis=0).astype("<f4"))
+    attributes |= add_further(draft, mesh.further)
     primitive = {"attributes": attributes, "indices": draft.indices(vertex.reshape(-1, 3))}
     primitive["material"] = add_material(draft, maps)
     draft.add("meshes", {"primitives": [primitive]})
@@ -68,6 +78,14 @@ def textured_glb(mesh: TexturedMesh, maps: Mapping[str, Map], *, settings: Mappi
     draft.add("scenes", {"nodes": [0]})
     draft.json["scene"] = 0
     return draft.packed(settings or {})
+
+
+def add_further(draft: Draft, further: Mapping[str, Shaped[np.ndarray, "face 3 n"]]) -> dict[str, int]:
+    """Accessors of further attributes, a vertex a corner."""
+    return {
+        name: draft.attribute(values.reshape(-1, values.shape[-1]), normalized=values.dtype == np.uint8)
+        for name, values in further.items()
+    }
 
 
 def flipped(uv: Float[np.ndarray, "vertex 2"]) -> Float[np.ndarray, "vertex 2"]:
@@ -84,22 +102,23 @@ def _write_obj(path: Path, mesh: TexturedMesh, maps: Mapping[str, Map], settings
             image = stored(maps[name], 8 if maps[name].bits == 8 else 16)
             content = png_bytes(image, text=settings, srgb=maps[name].kind == "colour")
             files.enter_context(atomic(picture)).write_bytes(content)
-        files.enter_context(atomic(material)).write_text(_mtl_text(maps, pictures), encoding="utf-8")
+        files.enter_context(atomic(material)).write_text(_mtl_text(maps, pictures, clamp=mesh.clamp), encoding="utf-8")
         with files.enter_context(atomic(path)).open("w", encoding="utf-8") as file:
             _write_obj_text(file, mesh, material.name)
     return [path, material, *pictures.values()]
 
 
-def _mtl_text(maps: Mapping[str, Map], pictures: Mapping[str, Path]) -> str:
+def _mtl_text(maps: Mapping[str, Map], pictures: Mapping[str, Path], *, clamp: bool) -> str:
     base = base_colour(maps)
+    options = "-clamp on " if clamp else ""
     lines = [f"# texloom {version()}", "newmtl texloom", "Kd 1 1 1", "Ks 0.04 0.04 0.04", "illum 2"]
     if base is not None:
-        lines.append(f"map_Kd {pictures[base].name}")
+        lines.append(f"map_Kd {options}{pictures[base].name}")
     for name, map in maps.items():
         if map.kind == "normal":
-            lines.append(f"norm {pictures[name].name}")
+            lines.append(f"norm {options}{pictures[name].name}")
         elif name in _MTL:
-            lines.append(f"{_MTL[name]} {pictures[name].name}")
+            lines.append(f"{_MTL[name]} {options}{pictures[name].name}")
     return "\n".join(lines) + "\n"
 
 

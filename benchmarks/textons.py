@@ -1,0 +1,96 @@
+"""Triangle quilting with textons (Magda & Kriegman 2003): the published tables beside ours, and what they leave out.
+
+``python -m benchmarks.textons PART...`` measures some parts anew and leaves the others on the page as they are.
+"""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from benchmarks import many_meshes, preprocessing, quilting, report
+from benchmarks.bunny import FACES, bunny
+from benchmarks.data import DATA, SEED
+
+NAME = "textons"
+PARTS = ("preprocessing", "synthesis", "threads", "growth", "edges", "many", "blending")
+MESHES = 100  # textured in one process
+
+
+def main(data: Path, parts: tuple[str, ...] = PARTS, *, meshes: int = MESHES) -> None:
+    """Measure, print and write the page."""
+    numbers: dict[str, Any] = {**_earlier(), "scale": round(quilting.scale_of(bunny(data)), 3)}
+    for part in parts:
+        print(f"benchmarks: {NAME}, {part}", flush=True)
+        numbers[part] = measure(part, data, meshes=meshes)
+        _write({name: numbers[name] for name in ("scale", *PARTS) if name in numbers})
+
+
+def measure(part: str, data: Path, *, meshes: int = MESHES) -> list[dict[str, Any]]:
+    """The rows of one part."""
+    if part == "preprocessing":
+        return preprocessing.preprocessing(data)
+    if part == "many":
+        return many_meshes.many(data, meshes)
+    return many_meshes.blending(data) if part == "blending" else getattr(quilting, part)(data)
+
+
+def _earlier() -> dict[str, Any]:
+    """Numbers of parts measured before."""
+    path = report.RESULTS / f"{NAME}.json"
+    if not path.is_file():
+        return {}
+    read = json.loads(path.read_text(encoding="utf-8"))
+    return {name: rows for name, rows in read.items() if name in PARTS}
+
+
+def _write(numbers: dict[str, Any]) -> None:
+    sections = [f"Seed {SEED}; published figures are of an Athlon at 1.3 GHz."]
+    for part in PARTS:
+        if rows := numbers.get(part):
+            sections += [_INTRODUCTION[part].format(**numbers), _shown(rows)]
+    report.write(NAME, title="Triangle quilting with textons", sections=sections, numbers=numbers)
+
+
+def _shown(rows: list[dict[str, Any]]) -> str:
+    return report.table(list(rows[0]), [list(row.values()) for row in rows])
+
+
+_ROUNDS = "2 rounds choose anew for the half of the patches that fit worst"
+_INTRODUCTION = {
+    "preprocessing": "## Preprocessing (table 1)\n\n"
+    f"Crops of {', '.join(preprocessing.SAMPLES)}, 11×11 windows, until 99 % of the texels keep their texton, warm, "
+    "the best of a few runs. Median and slowest of the samples with one orientation, as published; the median with "
+    f"{preprocessing.ORIENTATIONS} orientations, and of reading a saved file of these.",
+    "synthesis": "## Synthesis (table 2)\n\n"
+    f"A bunny of {FACES} faces; crops of {', '.join(quilting.SAMPLES)}, the median of them, warm, the best of 3. "
+    f"The texture's shortest side lies {quilting.REPEATS:g} times along the bunny's longest, so that by eq. 1 a face "
+    "is {scale} textures large. *As published*: single faces in random order, one orientation, textons alone. Ours on "
+    f"single faces, grown once, and then {_ROUNDS}; *default* is ours on patches of faces, whose making is told apart.",
+    "threads": "## One thread and two\n\nThe same with the first of the samples, in milliseconds.",
+    "growth": "## Linear in the number of faces\n\n"
+    "The bunny cut finer, with as many texels a face each time: a sample of 128², seconds. Two steps of four times as "
+    "many faces each, then one of two.",
+    "edges": "## Edges\n\n"
+    "Mean difference E_t along the edges, of 255, over all inner edges: as published, ours on single faces grown once "
+    f"and after {_ROUNDS}, and the default, patches of faces. There most edges lie inside patches and fit by "
+    "themselves: *borders only* counts the others. The sample lies "
+    f"{quilting.REPEATS:g} times along each mesh.",
+    "many": "## Many meshes, one sample\n\n"
+    f"One process for a folder of bunnies, each bent in its own way, with a saved {many_meshes.SAMPLE}: "
+    "`texloom surface FOLDER FILE.textons --method texton -o OUT`. Milliseconds a mesh, from start to exit, and of "
+    "each stage; *start* is Python, the sample, and what no stage counts, shared by all.",
+    "blending": "## Blending\n\n"
+    f"The bunny of {FACES} faces with {many_meshes.SAMPLE}, default parameters: edges, those between patches, those "
+    f"blended where the whole mesh shows on 1024 pixels; baking an atlas of {many_meshes.ATLAS}²; the GLB with "
+    "coordinates into the sample and with the atlas.",
+}
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.textons", description=__doc__)
+    parser.add_argument("part", nargs="*", choices=[*PARTS, []], help="all by default")
+    parser.add_argument("--data", type=Path, default=DATA, help="folder of exemplars, stacks and meshes")
+    parser.add_argument("--meshes", type=int, default=MESHES, help="textured in one process")
+    given = parser.parse_args()
+    main(given.data, tuple(given.part) or PARTS, meshes=given.meshes)

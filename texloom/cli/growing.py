@@ -1,0 +1,117 @@
+"""Texture grown over a mesh texel by texel: what ``texloom surface`` does for the methods that work on sites."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, cast
+
+from texloom.cli import bring_home, fusing, options
+from texloom.cli.analyses import with_analysis
+from texloom.cli.fields import direction_field, scale_field
+from texloom.cli.reapply import surface_domain
+from texloom.cli.samples import read_each, tell_dropped
+from texloom.cli.session import Session
+from texloom.cli.surface_wish import SurfaceWish, Texture
+from texloom.domain.surface import Surface, texel_for_repeats
+from texloom.exemplar.join import join
+from texloom.fusion import fuse as fusion
+from texloom.io.mesh import read_mesh
+from texloom.output.sources_file import SavedSources, save_sources
+from texloom.synthesis.synthesize import synthesize
+
+_REPEATS = 3.0  # sample widths across the mesh where neither --repeats nor --texel is given,
+_MOST_TEXELS = 1.2e6  # or fewer of a large sample, so that it takes seconds and an atlas of 2048² holds it
+
+
+def grow(wish: SurfaceWish, session: Session) -> Texture:
+    """Read the samples; then what textures one mesh after the other."""
+    assert wish.method is not None
+    with session.stage("read"):
+        stacks = read_each(wish.samples, mask=wish.mask, directx_normals=wish.directx_normals)
+        joined = join(stacks)
+        colours = fusing.parse_palette(wish.fusion.palette)
+        chosen = wish.method.build()
+    if wish.analysis is not None and wish.fusion.map is None:
+        chosen = with_analysis(chosen, wish.analysis, joined.exemplar, session)
+    tell_dropped(joined)
+    guides, method = wish.guides, wish.method
+
+    def texture(mesh: Path, output: Path) -> Mapping[str, Any]:
+        with session.stage("read"):
+            model = read_mesh(mesh, material=wish.material)
+        with session.stage("field"):
+            field = direction_field(model, guides.direction, order=guides.symmetry)
+            sizes = scale_field(model, guides.scale, guides.direction) if guides.progressive else None
+        with session.stage("sites"):
+            length = wish.texel or texel_for_repeats(model.mesh, wish.repeats or _REPEATS, stacks[0].shape[1])
+            if wish.texel is None and wish.repeats is None:
+                length = max(length, (float(model.mesh.face_areas.sum()) / _MOST_TEXELS) ** 0.5)
+            domain = Surface.build(model.mesh, field, texel=length, scale=sizes)
+        assigned, shown, belts = {}, joined, None
+        if wish.fusion.map is not None:
+            belts = wish.fusion.belts
+            with session.stage("map"):
+                where = fusing.of_surface(wish.fusion.map, model, domain, len(stacks), palette=colours)
+            fused = fusion.fuse(
+                stacks,
+                where.labels,
+                domain,
+                method=method.grower("fuse"),
+                belts=cast(fusion.Filling, belts),
+                seed=wish.seed,
+                report=session.report,
+            )
+            shown, result = fused.joined, fused.result
+            assigned = {"samples": where.told(wish.samples, fused.labels)}
+        else:
+            result = synthesize(joined.exemplar, domain, chosen, seed=wish.seed, report=session.report)
+        session.add(result.seconds)
+        settings = options.settings(
+            "surface",
+            *wish.samples,
+            method=chosen,
+            seed=wish.seed,
+            mesh=mesh.name,
+            texel=length,
+            direction=guides.direction,
+            scale=guides.scale,
+            symmetry=guides.symmetry,
+            mask=wish.mask,
+            fuse=None if wish.fusion.map is None else Path(wish.fusion.map).name,
+            belts=belts,
+        )
+        grown = bring_home.Grown(model, domain, result.sources, shown.exemplar)
+        with session.stage("write"):
+            homecoming = bring_home.bring_home(
+                grown, output, home=wish.home, atlas=bring_home.AtlasWish(*wish.atlas), settings=settings
+            )
+            session.wrote(homecoming.files)
+            if wish.preview is not None:
+                session.wrote(bring_home.write_preview(wish.preview, grown, homecoming.skin))
+            if wish.sources is not None:
+                kept = surface_domain(domain, homecoming.atlas, shown.exemplar)
+                session.wrote(save_sources(wish.sources, SavedSources(result.sources, kept, settings)))
+        if wish.report is not None:
+            with session.stage("report"):
+                from texloom.cli.reports import Run, of_surface
+                from texloom.output.report import write_report
+
+                run = Run(shown.exemplar, result, settings, dict(session.seconds), wish.command)
+                session.wrote(write_report(wish.report, of_surface(run, grown, homecoming.skin)))
+        return {
+            "method": method.method,
+            "preset": wish.preset,
+            "seed": wish.seed,
+            "sites": domain.count,
+            "texel": length,
+            **assigned,
+            "maps": list(shown.exemplar.maps),
+            "dropped": list(joined.dropped),
+            "patches": result.patches,
+            "energy": list(result.energy),
+            "stopped": result.stopped,
+            "as": wish.home,
+            "uv": homecoming.uv,
+            "mends": list(model.mends),
+        }
+
+    return texture
