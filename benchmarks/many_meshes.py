@@ -18,7 +18,8 @@ from texloom.io.stack import read_exemplar
 from texloom.output.atlas import lay_atlas
 from texloom.output.blended_atlas import bake_blend, face_sites
 from texloom.output.blending import blend, edge_errors
-from texloom.output.image import png_bytes
+from texloom.output.image import stored
+from texloom.output.png import png_bytes
 from texloom.output.sample_uv import usable_maps
 from texloom.output.textons_file import save_textons
 from texloom.output.unwrap import unwrap
@@ -27,6 +28,7 @@ from texloom.synthesis.quilting import Quilting
 
 SAMPLE = "weave-wood-basket-192"
 ATLAS, GUTTER = 2048, 8  # texels
+_FEW, _MANY = 10, 1000
 STAGES = ("read", "field", "patches", "growth", "rounds", "edges", "write")
 
 
@@ -37,19 +39,24 @@ def many(data: Path, count: int) -> list[dict[str, Any]]:
         here = Path(folder)
         (here / "meshes").mkdir()
         write_bent(here / "meshes", mesh, count)
-        textons = save_textons(here / "sample.textons", learn_textons(_sample(data), seed=SEED))
-        words = [here / "meshes", textons, "--method", "texton", "-o", here / "out"]
-        rows = []
-        for threads in (1, 2):
-            seconds, told = once(lambda threads=threads: _told(["surface", *words, "--threads", threads]))
-            stage = told["seconds"]
-            row = {"threads": threads, "meshes": count, "faces": len(mesh.faces), "process s": round(seconds, 2)}
-            row |= {"a mesh ms": round(1000 * seconds / count, 1)}
-            row |= {f"{name} ms": round(1000 * stage[name] / count, 1) for name in STAGES}
-            row |= {"start ms": round(1000 * (seconds - sum(stage[name] for name in STAGES)) / count, 1)}
-            print(f"  {row}", flush=True)
-            rows.append(row)
-    return rows
+        (here / "few.txt").write_text("".join(f"meshes/{number:04}.obj\n" for number in range(_FEW)), encoding="utf-8")
+        save_textons(here / "sample.textons", learn_textons(_sample(data), seed=SEED))
+        return [_many_row(here, count, len(mesh.faces), threads) for threads in (1, 2)]
+
+
+def _many_row(here: Path, count: int, faces: int, threads: int) -> dict[str, Any]:
+    """All meshes of a folder in one process, and a few of them, which tell what does not grow with their number."""
+    words = [here / "sample.textons", "--method", "texton", "-o", here / "out", "--threads", threads]
+    few, _ = once(lambda: _told(["surface", here / "few.txt", *words]))
+    seconds, told = once(lambda: _told(["surface", here / "meshes", *words]))
+    each = (seconds - few) / (count - _FEW)
+    row = {"threads": threads, "meshes": count, "faces": faces, "process s": round(seconds, 2)}
+    row |= {"a mesh ms": round(1000 * seconds / count, 1), "one more ms": round(1000 * each, 1)}
+    row |= {f"{_MANY} meshes, ms each": round((few + (_MANY - _FEW) * each) / _MANY * 1000, 1)}
+    stage = told["seconds"]
+    row |= {f"{name} ms": round(1000 * stage[name] / count, 1) for name in STAGES}
+    print(f"  {row}", flush=True)
+    return row
 
 
 def blending(data: Path) -> list[dict[str, Any]]:
@@ -67,7 +74,7 @@ def blending(data: Path) -> list[dict[str, Any]]:
     laying, laid = best(lambda: lay_atlas(sites, uv, size=ATLAS, gutter=GUTTER), 1)
     chosen = blend(mesh, quilted.coordinates, errors.at_faces(blended))
     baking, maps = best(lambda: bake_blend(chosen, laid, usable_maps(sample)), 2)
-    coding, _ = once(lambda: png_bytes(maps["basecolor"]))
+    coding, _ = once(lambda: png_bytes(stored(maps["basecolor"], 8)))
     sizes = _sizes(data)
     row = {
         "edges": len(errors.mean),

@@ -23,7 +23,7 @@ def main(data: Path, parts: tuple[str, ...] = PARTS, *, meshes: int = MESHES) ->
     for part in parts:
         print(f"benchmarks: {NAME}, {part}", flush=True)
         numbers[part] = measure(part, data, meshes=meshes)
-        _write({name: numbers[name] for name in ("scale", *PARTS) if name in numbers})
+    _write({name: numbers[name] for name in ("scale", *PARTS) if name in numbers})
 
 
 def measure(part: str, data: Path, *, meshes: int = MESHES) -> list[dict[str, Any]]:
@@ -56,30 +56,30 @@ def _shown(rows: list[dict[str, Any]]) -> str:
     return report.table(list(rows[0]), [list(row.values()) for row in rows])
 
 
-_ROUNDS = "2 rounds choose anew for the half of the patches that fit worst"
+_ROUNDS = "after 2 rounds in which the worst half is chosen anew"
 _INTRODUCTION = {
     "preprocessing": "## Preprocessing (table 1)\n\n"
     f"Crops of {', '.join(preprocessing.SAMPLES)}, 11×11 windows, until 99 % of the texels keep their texton, warm, "
     "the best of a few runs. Median and slowest of the samples with one orientation, as published; the median with "
     f"{preprocessing.ORIENTATIONS} orientations, and of reading a saved file of these.",
     "synthesis": "## Synthesis (table 2)\n\n"
-    f"A bunny of {FACES} faces; crops of {', '.join(quilting.SAMPLES)}, the median of them, warm, the best of 3. "
+    f"A bunny of {FACES} faces; crops of {', '.join(quilting.SAMPLES)}, the median of them, warm, the best of 2. "
     f"The texture's shortest side lies {quilting.REPEATS:g} times along the bunny's longest, so that by eq. 1 a face "
     "is {scale} textures large. *As published*: single faces in random order, one orientation, textons alone. Ours on "
-    f"single faces, grown once, and then {_ROUNDS}; *default* is ours on patches of faces, whose making is told apart.",
+    f"single faces, grown once, and {_ROUNDS}; *default* is ours on patches of faces, whose making is told apart.",
     "threads": "## One thread and two\n\nThe same with the first of the samples, in milliseconds.",
     "growth": "## Linear in the number of faces\n\n"
-    "The bunny cut finer, with as many texels a face each time: a sample of 128², seconds. Two steps of four times as "
-    "many faces each, then one of two.",
+    "The bunny cut finer, with as many texels a face each time: a sample of 128², seconds. Three steps to four "
+    "times as many faces, then one to twice.",
     "edges": "## Edges\n\n"
     "Mean difference E_t along the edges, of 255, over all inner edges: as published, ours on single faces grown once "
-    f"and after {_ROUNDS}, and the default, patches of faces. There most edges lie inside patches and fit by "
+    f"and {_ROUNDS}, and the default, patches of faces. There most edges lie inside patches and fit by "
     "themselves: *borders only* counts the others. The sample lies "
     f"{quilting.REPEATS:g} times along each mesh.",
     "many": "## Many meshes, one sample\n\n"
     f"One process for a folder of bunnies, each bent in its own way, with a saved {many_meshes.SAMPLE}: "
-    "`texloom surface FOLDER FILE.textons --method texton -o OUT`. Milliseconds a mesh, from start to exit, and of "
-    "each stage; *start* is Python, the sample, and what no stage counts, shared by all.",
+    "`texloom surface FOLDER FILE.textons --method texton -o OUT`. Milliseconds a mesh, from start to exit; what one "
+    "more mesh takes, by a process for 10 of them; extrapolated from both to 1000; then the stages.",
     "blending": "## Blending\n\n"
     f"The bunny of {FACES} faces with {many_meshes.SAMPLE}, default parameters: edges, those between patches, those "
     f"blended where the whole mesh shows on 1024 pixels; baking an atlas of {many_meshes.ATLAS}²; the GLB with "

@@ -140,20 +140,21 @@ def test_an_interrupt_from_outside(shelf: Path, tmp_path: Path) -> None:
     assert done.stderr == "texloom: interrupted, nothing written\n"
 
 
-@pytest.mark.parametrize("stage", ["a.obj", "write"])
+@pytest.mark.parametrize(("stage", "time"), [("c.obj", 1), ("write", 2)])
+@pytest.mark.parametrize("threads", [1, 2])
 def test_an_interrupt_leaves_whole_meshes(
-    shelf: Path, tmp_path: Path, stage: str, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+    shelf: Path, tmp_path: Path, stage: str, time: int, threads: int, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
     """Between two meshes, and when the second is about to be written."""
     seen: list[str] = []
 
     def report(self: Session, name: str, done: float) -> None:
         seen.append(name)
-        if name == stage and "a.obj" in seen:
+        if name == stage and seen.count(name) == time:
             raise KeyboardInterrupt
 
     monkeypatch.setattr(Session, "report", report)
-    assert run(shelf, "two.txt", tmp_path / "out") == 130
+    assert run(shelf, "two.txt", tmp_path / "out", "--threads", threads) == 130
     assert capsys.readouterr().err == f"texloom: interrupted, after writing {tmp_path / 'out' / 'c.glb'}\n"
     assert [file.name for file in (tmp_path / "out").iterdir()] == ["c.glb"]
 

@@ -1,4 +1,4 @@
-"""Direction and scale fields from the options of ``texloom surface``."""
+"""Direction and scale fields, and the length of a texel, from the options of ``texloom surface``."""
 
 from pathlib import Path
 
@@ -6,17 +6,21 @@ import numpy as np
 from jaxtyping import Float64
 
 from texloom.cli.guides import holds_arrows, placed_arrows, vertex_rows
+from texloom.domain.surface import texel_for_repeats
 from texloom.errors import FieldError, ParameterError
 from texloom.field import rbf
 from texloom.field.curvature import along_curvature
 from texloom.field.direction import DirectionField, from_constant, from_vectors
 from texloom.field.scale import checked, from_arrows
 from texloom.field.smooth import smoothest, through_arrows
+from texloom.mesh.mesh import Mesh
 from texloom.mesh.model import Model
 
 _NAMES = ("smooth", "curvature")
 _MANY_ARROWS = 100  # beyond, a scale field of two solves an arrow takes too long
 _RBF = "rbf:"
+_REPEATS = 3.0  # sample widths across the mesh where neither --repeats nor --texel is given,
+_MOST_TEXELS = 1.2e6  # or fewer of a large sample, so that it takes seconds and an atlas of 2048² holds it
 
 
 def direction_field(model: Model, wish: str, *, order: int) -> DirectionField:
@@ -55,6 +59,14 @@ def scale_field(model: Model, path: Path | None, direction: str) -> Float64[np.n
         return rbf.scales(mesh, vertices=placed.scale_vertex, scales=placed.scale)
     smoothness = "biharmonic" if len(placed.scale) <= _MANY_ARROWS else "harmonic"
     return from_arrows(mesh, vertices=placed.scale_vertex, scales=placed.scale, smoothness=smoothness)
+
+
+def texel_length(mesh: Mesh, columns: int, *, texel: float | None, repeats: float | None, few: bool) -> float:
+    """World length of a texel of a sample so many wide: given, by ``repeats``, or usual; ``few`` bounds the usual."""
+    if texel is not None:
+        return texel
+    length = texel_for_repeats(mesh, _REPEATS if repeats is None else repeats, columns)
+    return length if repeats is not None or not few else max(length, (mesh.face_areas.sum() / _MOST_TEXELS) ** 0.5)
 
 
 def guide_file(wish: str) -> Path | None:

@@ -6,20 +6,18 @@ from typing import Any, cast
 
 from texloom.cli import bring_home, fusing, options
 from texloom.cli.analyses import with_analysis
-from texloom.cli.fields import direction_field, scale_field
+from texloom.cli.fields import direction_field, scale_field, texel_length
+from texloom.cli.meshes import Texture
 from texloom.cli.reapply import surface_domain
 from texloom.cli.samples import read_each, tell_dropped
 from texloom.cli.session import Session
-from texloom.cli.surface_wish import SurfaceWish, Texture
-from texloom.domain.surface import Surface, texel_for_repeats
+from texloom.cli.surface_wish import SurfaceWish
+from texloom.domain.surface import Surface
 from texloom.exemplar.join import join
 from texloom.fusion import fuse as fusion
 from texloom.io.mesh import read_mesh
 from texloom.output.sources_file import SavedSources, save_sources
 from texloom.synthesis.synthesize import synthesize
-
-_REPEATS = 3.0  # sample widths across the mesh where neither --repeats nor --texel is given,
-_MOST_TEXELS = 1.2e6  # or fewer of a large sample, so that it takes seconds and an atlas of 2048² holds it
 
 
 def grow(wish: SurfaceWish, session: Session) -> Texture:
@@ -42,9 +40,7 @@ def grow(wish: SurfaceWish, session: Session) -> Texture:
             field = direction_field(model, guides.direction, order=guides.symmetry)
             sizes = scale_field(model, guides.scale, guides.direction) if guides.progressive else None
         with session.stage("sites"):
-            length = wish.texel or texel_for_repeats(model.mesh, wish.repeats or _REPEATS, stacks[0].shape[1])
-            if wish.texel is None and wish.repeats is None:
-                length = max(length, (float(model.mesh.face_areas.sum()) / _MOST_TEXELS) ** 0.5)
+            length = texel_length(model.mesh, stacks[0].shape[1], texel=wish.texel, repeats=wish.repeats, few=True)
             domain = Surface.build(model.mesh, field, texel=length, scale=sizes)
         assigned, shown, belts = {}, joined, None
         if wish.fusion.map is not None:

@@ -5,14 +5,14 @@ from pathlib import Path
 from typing import Any
 
 from texloom.cli import options
-from texloom.cli.fields import direction_field, scale_field
+from texloom.cli.fields import direction_field, scale_field, texel_length
 from texloom.cli.library import SUFFIX
+from texloom.cli.meshes import Texture
 from texloom.cli.quilt_home import Quilt, account, bring_quilt, picture
 from texloom.cli.samples import read_samples, tell_dropped
 from texloom.cli.session import Session
-from texloom.cli.surface_wish import QuiltWish, SurfaceWish, Texture
+from texloom.cli.surface_wish import QuiltWish, SurfaceWish
 from texloom.domain.faces import Faces, usual_width
-from texloom.domain.surface import texel_for_repeats
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import to_map
 from texloom.io.mesh import read_mesh
@@ -25,7 +25,7 @@ from texloom.search.textons import Textons, learn_textons
 from texloom.synthesis.quilting import Quilting
 from texloom.systems import texton
 
-_REPEATS = 3.0  # sample widths across the mesh where neither --repeats nor --texel is given
+_MOST_PATCHES = 3  # across the sample, nominally: some grow to three times their width, and must have room
 _LARGEST_FACE = 0.5  # of the sample's shorter side: longer faces are split, where the mesh may change
 
 
@@ -53,7 +53,8 @@ def quilt(wish: SurfaceWish, session: Session) -> Texture:
             field = direction_field(model, guides.direction, order=guides.symmetry)
             sizes = scale_field(model, guides.scale, guides.direction) if guides.progressive else None
         with session.stage("patches"):
-            length = wish.texel or texel_for_repeats(model.mesh, wish.repeats or _REPEATS, columns)
+            few = wish.home != "sample-uv"
+            length = texel_length(model.mesh, columns, texel=wish.texel, repeats=wish.repeats, few=few)
             faces = Faces.build(model.mesh, field, texel=length, scale=sizes, width=width, most=most, seed=wish.seed)
         quilted = method.run(textons, faces, seed=wish.seed, report=session.report)
         session.add(quilted.seconds)
@@ -122,9 +123,17 @@ def _method(wish: QuiltWish) -> Quilting:
 
 
 def _width(wish: QuiltWish, side: int) -> float | None:
-    """Texels across a patch, of a sample with so many a side; None: every face alone."""
+    """Texels across a patch, the sample's shorter side being given; None: every face alone.
+
+    Raises: ParameterError, if patches would have no room in the sample.
+    """
     if wish.published or wish.patch == 0:
         return None
+    if wish.patch is not None and wish.patch > side / _MOST_PATCHES:
+        raise ParameterError(
+            f"--patch {wish.patch:g} has no room in a sample of {side} texels: give at most {side // _MOST_PATCHES}, "
+            "or 0 to leave each face alone"
+        )
     return usual_width((side, side)) if wish.patch is None else wish.patch
 
 

@@ -3,6 +3,7 @@
 import json
 import math
 import sys
+import threading
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -38,6 +39,7 @@ class Session:
         self._text: str | None = None
         self._started = time.perf_counter()
         self.seconds: dict[str, float] = {}
+        self._lock = threading.Lock()
         _written.clear()
         _choose_machine(device, threads)
 
@@ -69,12 +71,13 @@ class Session:
         self.report(name, 0.0)
         started = time.perf_counter()
         yield
-        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - started
+        self.add({name: time.perf_counter() - started})
 
     def add(self, seconds: Mapping[str, float]) -> None:
-        """Stages that the library has timed itself."""
-        for name, value in seconds.items():
-            self.seconds[name] = self.seconds.get(name, 0.0) + value
+        """Stages that the library has timed itself; of work side by side they add up to more than has passed."""
+        with self._lock:
+            for name, value in seconds.items():
+                self.seconds[name] = self.seconds.get(name, 0.0) + value
 
     def wrote(self, paths: Path | Iterable[Path]) -> None:
         """Remember files that now exist."""

@@ -8,8 +8,9 @@ import typer
 from texloom.cli import methods, options
 from texloom.cli.analyses import check_analysis
 from texloom.cli.fuse import BELTS, Belts, Palette
+from texloom.cli.meshes import Meshes, over_meshes
 from texloom.cli.session import Session
-from texloom.cli.surface_wish import Fusion, Guides, Meshes, QuiltWish, SurfaceWish, over_meshes
+from texloom.cli.surface_wish import Fusion, Guides, QuiltWish, SurfaceWish
 from texloom.errors import ParameterError
 
 HOMES = {"vertex": (".glb", ".ply"), "atlas": (".glb", ".obj"), "sample-uv": (".glb", ".obj")}
@@ -127,9 +128,13 @@ def surface(
     with Session(device=device, threads=threads, as_json=as_json) as session:
         if quilts:
             from texloom.cli.quilting import quilt as texture
+            from texloom.kernels.launch import thread_count
+
+            failed = over_meshes(meshes, texture(wanted, session), session, at_once=thread_count())
         else:
             from texloom.cli.growing import grow as texture
-        failed = over_meshes(meshes, texture(wanted, session), session)
+
+            failed = over_meshes(meshes, texture(wanted, session), session)
     if failed:
         raise typer.Exit(2)
 

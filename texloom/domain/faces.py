@@ -152,6 +152,8 @@ def _about_middles(groups: Groups) -> Complex128[np.ndarray, "face 3"]:
 
 
 def usual_width(shape: tuple[int, int]) -> float:
-    """Texels across a patch where nothing is said: a quarter of the sample's shorter side, 16 to 64, a half at most."""
-    side = min(shape)
-    return min(max(side / 4, 16.0), 64.0, side / 2)
+    """Texels across a patch where nothing is said: a quarter of the sample's shorter side, 64 at most.
+
+    Some patches grow to three times their width, and then still have room.
+    """
+    return min(min(shape) / 4, 64.0)

@@ -143,6 +143,8 @@ class _Chooser:
     ) -> None:
         """Place the patches batch by batch, ``order[starts[i]:starts[i + 1]]`` side by side."""
         self._todo[: len(order)] = order
+        if self._lanes == 1:
+            starts = [0, len(order)]  # one after the other is in order too, without a launch for each batch
         for begin, end in zip(starts[:-1], starts[1:], strict=True):
             for first in range(begin, end, self._at_once):
                 last = min(first + self._at_once, end)
