@@ -6,6 +6,8 @@ import numpy as np
 from jaxtyping import Float64
 
 from texloom.cli.guides import holds_arrows, placed_arrows, vertex_rows
+from texloom.cli.session import Session
+from texloom.cli.surface_wish import SurfaceWish
 from texloom.domain.surface import texel_for_repeats
 from texloom.errors import FieldError, ParameterError
 from texloom.field import rbf
@@ -13,6 +15,7 @@ from texloom.field.curvature import along_curvature
 from texloom.field.direction import DirectionField, from_constant, from_vectors
 from texloom.field.scale import checked, from_arrows
 from texloom.field.smooth import smoothest, through_arrows
+from texloom.io.mesh import read_mesh
 from texloom.mesh.mesh import Mesh
 from texloom.mesh.model import Model
 
@@ -21,6 +24,18 @@ _MANY_ARROWS = 100  # beyond, a scale field of two solves an arrow takes too lon
 _RBF = "rbf:"
 _REPEATS = 3.0  # sample widths across the mesh where neither --repeats nor --texel is given,
 _MOST_TEXELS = 1.2e6  # or fewer of a large sample, so that it takes seconds and an atlas of 2048² holds it
+
+
+def read_guided(
+    path: Path, wish: SurfaceWish, session: Session
+) -> tuple[Model, DirectionField, Float64[np.ndarray, "vertex"] | None]:
+    """A mesh, its direction field and its scales."""
+    guides = wish.guides
+    with session.stage("read"):
+        model = read_mesh(path, material=wish.material)
+    with session.stage("field"):
+        field = direction_field(model, guides.direction, order=guides.symmetry)
+        return model, field, scale_field(model, guides.scale, guides.direction) if guides.progressive else None
 
 
 def direction_field(model: Model, wish: str, *, order: int) -> DirectionField:

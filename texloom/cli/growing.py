@@ -6,7 +6,7 @@ from typing import Any, cast
 
 from texloom.cli import bring_home, fusing, options
 from texloom.cli.analyses import with_analysis
-from texloom.cli.fields import direction_field, scale_field, texel_length
+from texloom.cli.fields import read_guided, texel_length
 from texloom.cli.meshes import Texture
 from texloom.cli.reapply import surface_domain
 from texloom.cli.samples import read_each, tell_dropped
@@ -15,7 +15,6 @@ from texloom.cli.surface_wish import SurfaceWish
 from texloom.domain.surface import Surface
 from texloom.exemplar.join import join
 from texloom.fusion import fuse as fusion
-from texloom.io.mesh import read_mesh
 from texloom.output.sources_file import SavedSources, save_sources
 from texloom.synthesis.synthesize import synthesize
 
@@ -34,11 +33,7 @@ def grow(wish: SurfaceWish, session: Session) -> Texture:
     guides, method = wish.guides, wish.method
 
     def texture(mesh: Path, output: Path) -> Mapping[str, Any]:
-        with session.stage("read"):
-            model = read_mesh(mesh, material=wish.material)
-        with session.stage("field"):
-            field = direction_field(model, guides.direction, order=guides.symmetry)
-            sizes = scale_field(model, guides.scale, guides.direction) if guides.progressive else None
+        model, field, sizes = read_guided(mesh, wish, session)
         with session.stage("sites"):
             length = texel_length(model.mesh, stacks[0].shape[1], texel=wish.texel, repeats=wish.repeats, few=True)
             domain = Surface.build(model.mesh, field, texel=length, scale=sizes)

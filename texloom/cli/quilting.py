@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from texloom.cli import options
-from texloom.cli.fields import direction_field, scale_field, texel_length
+from texloom.cli.fields import read_guided, texel_length
 from texloom.cli.library import SUFFIX
 from texloom.cli.meshes import Texture
 from texloom.cli.quilt_home import Quilt, account, bring_quilt, picture
@@ -15,7 +15,6 @@ from texloom.cli.surface_wish import QuiltWish, SurfaceWish
 from texloom.domain.faces import Faces, usual_width
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import to_map
-from texloom.io.mesh import read_mesh
 from texloom.output.blending import THRESHOLD, Viewer, edge_errors
 from texloom.output.edge_picture import edge_picture
 from texloom.output.image import write_image
@@ -47,11 +46,7 @@ def quilt(wish: SurfaceWish, session: Session) -> Texture:
     most = None if wish.home == "sample-uv" else _LARGEST_FACE * exemplar.least_side
 
     def texture(mesh: Path, output: Path) -> Mapping[str, Any]:
-        with session.stage("read"):
-            model = read_mesh(mesh, material=wish.material)
-        with session.stage("field"):
-            field = direction_field(model, guides.direction, order=guides.symmetry)
-            sizes = scale_field(model, guides.scale, guides.direction) if guides.progressive else None
+        model, field, sizes = read_guided(mesh, wish, session)
         with session.stage("patches"):
             few = wish.home != "sample-uv"
             length = texel_length(model.mesh, columns, texel=wish.texel, repeats=wish.repeats, few=few)
