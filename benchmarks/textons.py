@@ -73,8 +73,8 @@ _INTRODUCTION = {
     "times as many faces, then one to twice.",
     "edges": "## Edges\n\n"
     "Mean difference E_t along the edges, of 255, over all inner edges: as published, ours on single faces grown once "
-    f"and {_ROUNDS}, and the default, patches of faces. There most edges lie inside patches and fit by "
-    "themselves: *borders only* counts the others. The sample lies "
+    f"and {_ROUNDS.replace('2', '5')}, and the default, patches of faces. There most edges lie inside patches and fit "
+    "by themselves: *borders only* counts the others. The sample lies "
     f"{quilting.REPEATS:g} times along each mesh.",
     "many": "## Many meshes, one sample\n\n"
     f"One process for a folder of bunnies, each bent in its own way, with a saved {many_meshes.SAMPLE}: "

@@ -31,6 +31,8 @@ class Watched:
     def __init__(self, method: Quilting, textons: Textons, faces: Faces, seed: int = 0) -> None:
         self.chooser, self.share = _Chooser(method, textons, faces, seed), method.share
         self.order, self.starts = _growth(faces, method.order, seed)
+        # Small batches otherwise go together.
+        self.chooser._runs = lambda starts: ((a, b, 1) for a, b in zip(starts[:-1], starts[1:], strict=True))
 
     def growth(self) -> Iterator[Batch]:
         """What grows, step by step."""

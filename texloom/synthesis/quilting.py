@@ -4,8 +4,10 @@ After Magda & Kriegman 2003, section 3.2.2; ``docs/papers/texton.md`` says where
 """
 
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from math import ceil
 from typing import Literal
 
 import numpy as np
@@ -33,7 +35,7 @@ _MOST_VOTES = (1 << (COUNT_BITS - 1)) - 3  # counted in a vote
 _MOST_TEXTONS = (1 << 15) - 1
 _MOST_LANES = 16  # each has working arrays as large as the sample,
 _MOST_WORK = 1 << 27  # of so many texels in all (1 GB), or there is a single one
-_FEW = 4  # patches are not worth another thread
+_HANDING_OVER = 2e5  # ns a thread should have to do; a vote takes some 2 ns, comparing a point 3, a patch at least 3000
 _AT_ONCE = 1024  # patches a thread places before progress is told
 
 
@@ -130,6 +132,8 @@ class _Chooser:
         rims = [*faces.rim, faces.mesh.twins, faces.patch, layout, *faces.bounds]
         thin = max(_THIN if by_colour else 1, -(-longest // _MOST_VOTES))
         chance = draws.bits(seed, _PLACE, index=np.arange(faces.count))
+        work = points.mean() * (2.0 * len(textons.bucket) / textons.count / thin + 3.0 * method.candidates) + 3000.0
+        self._few = max(ceil(_HANDING_OVER / work), 1)
         numbers = [thin, method.candidates, int(by_colour), spacing.astype(np.float32), chance, longest]
         self._choose = Repeated(
             choose_places,
@@ -143,17 +147,27 @@ class _Chooser:
     ) -> None:
         """Place the patches batch by batch, ``order[starts[i]:starts[i + 1]]`` side by side."""
         self._todo[: len(order)] = order
-        if self._lanes == 1:
-            starts = [0, len(order)]  # one after the other is in order too, without a launch for each batch
-        for begin, end in zip(starts[:-1], starts[1:], strict=True):
+        for begin, end, lanes in self._runs(starts):
             for first in range(begin, end, self._at_once):
                 last = min(first + self._at_once, end)
-                self._place(first, last, keep=keep)
+                self._place(first, last, lanes, keep=keep)
                 report("quilting", last / len(order))
 
-    def _place(self, first: int, last: int, *, keep: bool) -> None:
-        """Place patches that do not touch."""
-        lanes = max(min(self._lanes, (last - first) // _FEW), 1)
+    def _runs(self, starts: list[int]) -> Iterator[tuple[int, int, int]]:
+        """Batches and the lanes they are worth; small ones in a row go together on one: they are in order anyway."""
+        small = 0
+        for begin, end in zip(starts[:-1], starts[1:], strict=True):
+            lanes = min(self._lanes, (end - begin) // self._few)
+            if lanes > 1:
+                if small < begin:
+                    yield small, begin, 1
+                yield begin, end, lanes
+                small = end
+        if small < starts[-1]:
+            yield small, starts[-1], 1
+
+    def _place(self, first: int, last: int, lanes: int, *, keep: bool) -> None:
+        """Place patches that do not touch, or on one lane any."""
         searches = -(-(last - first) // lanes) * self.faces.order
         if self._searched + searches >= _SEARCHES:
             self._votes[...] = 0
