@@ -16,6 +16,7 @@ from texloom.cli.fill import fill
 from texloom.cli.fuse import fuse
 from texloom.cli.image import image
 from texloom.cli.inspect import inspect
+from texloom.cli.points import points
 from texloom.cli.score import score
 from texloom.cli.session import written
 from texloom.cli.surface import surface
@@ -31,7 +32,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (image, surface, fill, fuse, apply, textons, inspect, score, demo):
+for _command in (image, surface, fill, fuse, apply, textons, points, inspect, score, demo):
     app.command()(_command)
 
 

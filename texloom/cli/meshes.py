@@ -88,15 +88,16 @@ def over_meshes(meshes: Meshes, texture: Texture, session: "Session", *, at_once
         try:
             return {"mesh": mesh.name, **texture(mesh, output)}
         except TexloomError as error:
-            problem = " ".join(str(error).split())
-            named = problem if problem.startswith(mesh.name) else f"{mesh.name}: {problem}"
-            typer.echo(f"texloom: {named}", err=True)
-            return {"mesh": mesh.name, "failed": problem}
+            return {"mesh": mesh.name, "failed": " ".join(str(error).split())}
 
     told: list[Mapping[str, Any]] = []
     with _folder(meshes.output):
         for entry in _each(tried, meshes.pairs, at_once):
             told.append(entry)
+            if "failed" in entry:
+                name, problem = str(entry["mesh"]), str(entry["failed"])
+                named = problem if problem.startswith(name) else f"{name}: {problem}"
+                typer.echo(f"texloom: {named}", err=True)
             session.report(str(entry["mesh"]), len(told) / len(meshes.pairs))
     failed = [str(entry["mesh"]) for entry in told if "failed" in entry]
     words = f"{len(told) - len(failed)} of {len(told)} meshes textured, in {meshes.output}"
