@@ -44,7 +44,7 @@ def test_rows_are_those_of_the_files_vertices(tmp_path: Path, model: Model, suff
     np.testing.assert_array_equal(vertex_rows(path, model, columns=1), [[4], [3], [2], [1]])
 
 
-@pytest.mark.parametrize("prefix", ["", "rbf:"])
+@pytest.mark.parametrize("prefix", ["", "rbf:", "spread:"])
 def test_a_field_goes_through_the_arrows_of_a_file(tmp_path: Path, model: Model, prefix: str) -> None:
     path = written(tmp_path, [{"vertex": 3, "direction": [3, 3, 9], "scale": 2.0}])
     field = direction_field(model, f"{prefix}{path}", order=1)
@@ -63,7 +63,7 @@ def test_rows_of_vectors_are_the_field(tmp_path: Path, model: Model) -> None:
 
 def test_a_wish_is_a_name_a_vector_or_a_file() -> None:
     assert guide_file("smooth") is guide_file("curvature") is guide_file("0,-1,0.5") is None
-    assert guide_file("a.json") == guide_file("rbf:a.json") == Path("a.json")
+    assert guide_file("a.json") == guide_file("rbf:a.json") == guide_file("spread:a.json") == Path("a.json")
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from texloom.mesh.model import Model
 
 _NAMES = ("smooth", "curvature")
 _MANY_ARROWS = 100  # beyond, a scale field of two solves an arrow takes too long
-_RBF = "rbf:"
+_RBF, _SPREAD = "rbf:", "spread:"
 _REPEATS = 3.0  # sample widths across the mesh where neither --repeats nor --texel is given,
 _MOST_TEXELS = 1.2e6  # or fewer of a large sample, so that it takes seconds and an atlas of 2048² holds it
 
@@ -39,7 +39,7 @@ def read_guided(
 
 
 def direction_field(model: Model, wish: str, *, order: int) -> DirectionField:
-    """The field that ``--direction`` asks for: a name, a vector x,y,z, a file, or ``rbf:`` and a file of arrows."""
+    """The field that ``--direction`` asks for: a name, x,y,z, a file, or ``rbf:`` or ``spread:`` and one of arrows."""
     mesh = model.mesh
     if wish == "smooth":
         return smoothest(mesh, order)
@@ -53,7 +53,13 @@ def direction_field(model: Model, wish: str, *, order: int) -> DirectionField:
     placed = placed_arrows(path, model)
     if not len(placed.direction):
         raise FieldError(f"{path.name}: none of its {len(placed.scale)} arrows gives a direction")
-    through = rbf.directions if wish.startswith(_RBF) else through_arrows
+    through = through_arrows
+    if wish.startswith(_RBF):
+        through = rbf.directions
+    if wish.startswith(_SPREAD):
+        from texloom.field import spread
+
+        through = spread.directions
     return through(mesh, order, vertices=placed.direction_vertex, directions=placed.direction)
 
 
@@ -86,7 +92,7 @@ def texel_length(mesh: Mesh, columns: int, *, texel: float | None, repeats: floa
 
 def guide_file(wish: str) -> Path | None:
     """The file that a wish for a direction names, if it names one."""
-    return None if wish in _NAMES or vector(wish) is not None else Path(wish.removeprefix(_RBF))
+    return None if wish in _NAMES or vector(wish) is not None else Path(wish.removeprefix(_RBF).removeprefix(_SPREAD))
 
 
 def vector(wish: str) -> tuple[float, ...] | None:

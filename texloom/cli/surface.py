@@ -37,7 +37,7 @@ def surface(
         float | None, typer.Option(metavar="SIZE", help="A texel's length in world units instead.")
     ] = None,
     direction: Annotated[
-        str, typer.Option(metavar="FIELD", help="smooth, curvature, x,y,z, a file of arrows, or rbf:FILE.")
+        str, typer.Option(metavar="FIELD", help="smooth, curvature, x,y,z, a file of arrows, rbf:FILE or spread:FILE.")
     ] = "smooth",
     scale: Annotated[Path | None, typer.Option(metavar="FILE", help="Arrows or an array: larger, smaller.")] = None,
     symmetry: Annotated[int, typer.Option(metavar="N", help="1, 2, 4 or 6 directions at a point.")] = 1,
