@@ -1,7 +1,7 @@
 """Quilted faces back on the user's mesh: coordinates into the sample, a blended atlas, vertex colours; a report."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -71,12 +71,12 @@ def bring_quilt(quilt: Quilt, output: Path, wish: SurfaceWish, settings: Mapping
     if wish.home == "sample-uv":
         return _on_sample(quilt, output, settings)
     if wish.home == "vertex":
-        sites = SurfaceSites.of(quilt.surface)
-        files = [write_vertex_colours(output, sites, quilt.at_sites, quilt.exemplar, settings=settings)]
+        sites, whole = SurfaceSites.of(quilt.surface), replace(quilt.exemplar, maps=dict(quilt.maps))
+        files = [write_vertex_colours(output, sites, quilt.at_sites, whole, settings=settings)]
         if wish.sources is not None:
             kept = surface_domain(quilt.surface, None, quilt.exemplar)
             files.append(save_sources(wish.sources, SavedSources(quilt.at_sites, kept, settings)))
-        return Homecoming(files, coloured_skin(quilt.at_sites, quilt.exemplar))
+        return Homecoming(files, coloured_skin(quilt.at_sites, whole))
     return _on_atlas(quilt, output, wish, settings)
 
 
