@@ -1,5 +1,6 @@
 """The meshes ``texloom surface`` is asked for, one or many, and the way through them."""
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -45,10 +46,9 @@ class Meshes:
             raise FileError(f"{mesh}: no meshes there: {', '.join(MESH_SUFFIXES)} are understood")
         if output.is_file() or (output.suffix and not output.is_dir()):
             raise ParameterError(f"{output.name}: {len(found)} meshes go into a folder: give one")
-        names = [file.stem for file in found]
-        double = next((name for name in names if names.count(name) > 1), None) if len(set(names)) < len(names) else None
-        if double is not None:
-            raise ParameterError(f"{mesh}: two meshes are called {double}, one would overwrite the other: rename one")
+        name, times = Counter(file.stem for file in found).most_common(1)[0]
+        if times > 1:
+            raise ParameterError(f"{mesh}: two meshes are called {name}, one would overwrite the other: rename one")
         pairs = tuple((file, output / f"{file.stem}.glb") for file in found)
         for file, written in pairs:
             if written.resolve() == file.resolve():
@@ -61,11 +61,6 @@ class Meshes:
     def suffix(self) -> str:
         """Of what is written."""
         return self.pairs[0][1].suffix.lower()
-
-    @property
-    def checked(self) -> Path:
-        """What has to lie in a folder that is there."""
-        return self.output
 
     def check(self, *extras: Path | None) -> None:
         """Raises: ParameterError, if a file about one mesh is asked for and there are many."""

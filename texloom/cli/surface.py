@@ -123,7 +123,7 @@ def surface(
         check_analysis(analysis, preset)
     options.check_report(report)
     _check_pictures(preview=preview, edges=edges)
-    options.check_output(meshes.checked, preview, sources, report, analysis, edges)
+    options.check_output(meshes.output, preview, sources, report, analysis, edges)
 
     with Session(device=device, threads=threads, as_json=as_json) as session:
         if quilts:

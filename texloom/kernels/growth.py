@@ -11,17 +11,23 @@ _STEPS = wp.constant(64)  # shares of a border told apart
 
 
 @wp.func
+def swap(key: wp.array(dtype=wp.int64), item: wp.array(dtype=int), a: int, b: int):
+    """Exchange two entries of a heap."""
+    k = wp.int64(key[a])
+    i = int(item[a])
+    key[a] = key[b]
+    item[a] = item[b]
+    key[b] = k
+    item[b] = i
+
+
+@wp.func
 def sift_up(key: wp.array(dtype=wp.int64), item: wp.array(dtype=int), last: int):
     """Restore a binary heap whose last entry is new."""
     at = int(last)
     while at > 0 and key[at] < key[(at - 1) / 2]:
         above = (at - 1) / 2
-        k = wp.int64(key[at])
-        i = int(item[at])
-        key[at] = key[above]
-        item[at] = item[above]
-        key[above] = k
-        item[above] = i
+        swap(key, item, at, above)
         at = above
 
 
@@ -40,12 +46,7 @@ def sift_down(key: wp.array(dtype=wp.int64), item: wp.array(dtype=int), size: in
         if least == at:
             busy = False
         else:
-            k = wp.int64(key[at])
-            i = int(item[at])
-            key[at] = key[least]
-            item[at] = item[least]
-            key[least] = k
-            item[least] = i
+            swap(key, item, at, least)
             at = least
 
 

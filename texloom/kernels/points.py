@@ -8,7 +8,7 @@ Arrays of the triangulation are those of ``halfedges``, arrays of the ground and
 import warp as wp
 
 from texloom.kernels.delaunay import WELL_LAID, facing
-from texloom.kernels.ground import after, before, descend, place_at, share_between, slide, walk
+from texloom.kernels.ground import after, before, descend, on_edge, place_at, share_between, slide, walk
 from texloom.kernels.halfedges import MOST_AROUND, fan_start, next_around
 
 HALF = wp.constant(wp.float64(0.5))
@@ -157,9 +157,7 @@ def repel(
         )
         f = h // 3
         e = h - 3 * f
-        b = wp.vec3d()
-        b[e] = wp.float64(1.0) - share
-        b[(e + 1) % 3] = share
+        b = on_edge(e, share)
     else:
         local = spacing * scale[v]
         way = gain * local * push(tail, twin, at, scale, begin, reach * spacing) + swing * (at[v] - last[i])
@@ -229,8 +227,7 @@ def halve(
         h, s = slide(vertex, corner, following, leading, h, s, HALF * length)
         f = h // 3
         e = h - 3 * f
-        b[e] = wp.float64(1.0) - s
-        b[(e + 1) % 3] = s
+        b = on_edge(e, s)
     else:
         # From either end half way straight on, with and without going down to the nearest place; where the normals
         # part, also up the ridge that may lie between, or down the groove. The normal tells the wrong side of a sheet
