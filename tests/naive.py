@@ -125,41 +125,62 @@ def feather_layers(
     return entry, share
 
 
+def turned(offset: ndarray, angle: float) -> ndarray:
+    """[row, column] as read in axes turned by ``angle``."""
+    (row, column), cosine, sine = offset, np.cos(angle), np.sin(angle)
+    return np.array([cosine * row + sine * column, cosine * column - sine * row])
+
+
+def nearest_window(windows: ndarray, mean: ndarray, axes: ndarray, seen: ndarray) -> int:
+    """The window whose components are nearest to those of what is seen, (sample, channel) each; the first of equals."""
+    flat = axes.reshape(-1, axes.shape[-1]).astype(float)
+    away = (windows - seen).reshape(len(windows), -1) @ flat
+    return int((away**2).sum(1).argmin())
+
+
 def correct_site(
     image: ndarray,
     usable: ndarray,
     similar: ndarray,
-    sites: ndarray,
-    offset: ndarray,
-    position: ndarray,
-    colour: ndarray,
-    label: ndarray,
+    near: tuple[ndarray, ndarray, ndarray],
+    shown: tuple[ndarray, ndarray, ndarray],
+    samples: tuple[ndarray, ndarray, ndarray],
     most: int,
-) -> tuple[ndarray, float]:
-    """The cheapest candidate for one neighbourhood, the middle site first, and its mean squared difference."""
-    there = sites >= 0
-    tried: list[ndarray] = []
-    for k in np.flatnonzero(there & ((offset**2).sum(1) < 2.5)):
-        if label[sites[k]] < 0:
+    window: ndarray | None = None,
+) -> tuple[ndarray, float, float]:
+    """Position and turn of the cheapest candidate for one neighbourhood, and its mean squared difference.
+
+    ``near`` are the sites whose sources are tried, the middle one first, their offsets, and the angles by which the
+    middle one's frame is turned against theirs. ``shown`` is every site's position, turn and label: sites without a
+    label suggest nothing. ``samples`` are what is compared: offset, value, known. ``window`` is tried last.
+    """
+    position, turn, label = shown
+    tried: list[tuple[ndarray, float]] = []
+    for k, (site, offset, frame) in enumerate(zip(*near, strict=True)):
+        if site < 0 or label[site] < 0 or (offset**2).sum() >= 2.5:
             continue
-        source = position[sites[k]]
+        source, angle = position[site], float(turn[site] - frame)
         texel = np.clip(np.floor(source + 0.5).astype(int), 0, np.array(similar.shape[:2]) - 1)
         alike = [source + (other - texel) for other in similar[tuple(texel)]] if k == 0 else []
-        for guess, place in enumerate([source - offset[k], *(other - offset[k] for other in alike)]):
+        for guess, place in enumerate([source, *alike]):
+            place = place - turned(offset, angle)
             whole = np.floor(place + 0.5).astype(int)
             inside = (whole >= 0).all() and (whole < usable.shape).all() and usable[tuple(whole)]
             fits = inside or k + guess == 0  # what is shown now may stay
-            if fits and len(tried) < most and all(np.abs(place - other).sum() >= 0.3 for other in tried):
-                tried.append(place)
+            old = any(np.abs(place - other).sum() < 0.3 and np.cos(angle - its) > 0.87 for other, its in tried)
+            if fits and len(tried) < most and not old:
+                tried.append((place, angle))
+    if window is not None:
+        tried.append((window, 0.0))
     if not tried:
-        return position[sites[0]], 0.0
-    costs = [
-        np.mean(
-            [((bilinear(image, *(place + offset[k])) - colour[sites[k]]) ** 2).sum() for k in np.flatnonzero(there)]
-        )
-        for place in tried
-    ]
-    return tried[int(np.argmin(costs))], min(costs)
+        return position[near[0][0]], float(turn[near[0][0]]), 0.0
+    step, value, known = (part[samples[2] > 0] for part in samples)
+    costs = []
+    for place, angle in tried:
+        squares = [((bilinear(image, *(place + turned(s, angle))) - v) ** 2).sum() for s, v in zip(step, value)]
+        costs.append(float(np.sum(squares) / max(len(known), 1)))
+    best = int(np.argmin(costs))
+    return *tried[best], costs[best]
 
 
 def window_components(

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from texloom.synthesis.quilting import Quilting as Quilting
     from texloom.synthesis.refine import Refine as Refine
     from texloom.synthesis.refine_patches import RefinePatches as RefinePatches
+    from texloom.synthesis.sweep import Sweep as Sweep
     from texloom.synthesis.synthesize import synthesize as synthesize
 
 __version__ = "0.1.0"
@@ -61,6 +62,7 @@ _HOMES = {
     "RefinePatches": "synthesis.refine_patches",
     "SourceMap": "sources",
     "Surface": "domain.surface",
+    "Sweep": "synthesis.sweep",
     "Textons": "search.textons",
     "fill": "synthesis.fill",
     "filled_maps": "output.filled",

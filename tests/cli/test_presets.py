@@ -10,7 +10,7 @@ from PIL import Image
 from tests.synthesis.samples import blobs
 from texloom.cli import main as command
 from texloom.cli.methods import wish
-from texloom.cli.options import METHODS, PRESET_METHODS, PRESETS
+from texloom.cli.options import PRESET_METHODS, PRESETS, SURFACE_METHODS, SURFACE_PRESETS
 from texloom.demo.polygonise import polygonise
 from texloom.demo.shapes import ball
 from texloom.demo.write import write_obj
@@ -20,7 +20,8 @@ from texloom.exemplar.exemplar import from_array
 from texloom.synthesis.optimize import Optimize
 from texloom.synthesis.refine import Refine
 from texloom.synthesis.refine_patches import RefinePatches
-from texloom.systems import refine
+from texloom.synthesis.sweep import Sweep
+from texloom.systems import refine, sweep
 
 Captured = pytest.CaptureFixture[str]
 
@@ -47,8 +48,23 @@ def run(folder: Path, words: str) -> int:
 
 
 def test_every_preset_has_methods_and_is_known_by_name() -> None:
-    assert tuple(PRESET_METHODS) == PRESETS
-    assert {name for names in PRESET_METHODS.values() for name in names} == set(METHODS)
+    """Textons are wired apart: their method chooses faces, not sites."""
+    assert (*PRESET_METHODS, "texton") == SURFACE_PRESETS and set(PRESETS) < set(PRESET_METHODS)
+    assert [*(name for names in PRESET_METHODS.values() for name in names), "texton"] == list(SURFACE_METHODS)
+
+
+def test_sweep_is_for_surfaces_and_takes_its_own_parameters() -> None:
+    ours = wish("sweep", "tree", None, surface=True, levels=2, window=5, start=None)
+    assert ours.build() == Sweep(search="tree", levels=2, window=5)
+    assert wish(None, None, "sweep", surface=True, shape="causal").build() == sweep.sweeps(shape="causal")
+    with pytest.raises(ParameterError, match="unknown method 'sweep'"):
+        wish("sweep", None, None)
+    with pytest.raises(ParameterError, match="--levels 2 is not for optimize: add --method sweep"):
+        wish(None, None, None, surface=True, levels=2)
+    with pytest.raises(ParameterError, match="unknown search 'pca': choose coherence or tree"):
+        wish("sweep", "pca", None, surface=True)
+    with pytest.raises(ParameterError, match="cannot continue one"):
+        ours.grower("fuse")
 
 
 def test_refine_is_the_papers_for_each_task() -> None:

@@ -8,8 +8,9 @@ from numpy import ndarray
 from tests import naive
 from texloom.arrays import fours
 from texloom.domain.grid import Grid
-from texloom.kernels.correction import correct_sites
+from texloom.kernels.correction import find_sources
 from texloom.kernels.launch import launch
+from texloom.synthesis.visits import NO_TREE
 
 ROWS, COLUMNS, REACH, MOST = 12, 11, 1, 12
 
@@ -38,15 +39,33 @@ def correct(scene: dict[str, ndarray], sites: ndarray, offset: ndarray, **other:
     turn = other.get("turn", np.zeros(len(scene["label"]), np.float32))
     changed = other.get("changed", np.zeros(len(scene["label"]), np.int32))
     visited = other.get("visited", np.zeros(count, np.int32))
+    samples = sites.shape[1]
+    around = {
+        "samples": np.arange(samples, dtype=np.int32),
+        "sites": sites[:, :, None],
+        "weights": np.ones((1, 1, 1), np.float32),
+        "offset": offset,
+        "near": sites,
+        "near_offset": offset,
+        "turned": other.get("turned", np.zeros((1, 1), np.float32)),
+    }
+    canvas = {"position": scene["position"], "turn": turn, "label": scene["label"], "changed": changed}
+    canvas["colour"] = fours(scene["colour"])
+    exemplar = {"image": fours(scene["image"]), "usable": scene["usable"], "similar": scene["similar"], "suggesting": 1}
+    desk = {
+        "seen": np.empty((count, samples, 1, 4), np.float32),
+        "known": np.empty((count, samples), np.float32),
+        "query": np.empty((count, 1, 4), np.float32),
+        "nearest": np.empty((count, 1), np.int32),
+        "distance": np.empty((count, 1), np.float32),
+        "tried": np.empty((count, MOST, 3), np.float32),
+        "found": found,
+    }
     launch(
-        correct_sites,
+        find_sources,
         count,
-        inputs=[
-            *(np.arange(count, dtype=np.int32), sites, offset, other.get("turned", np.zeros((1, 1), np.float32))),
-            *(scene["position"], turn, fours(scene["colour"]), scene["label"], changed, visited),
-            *(fours(scene["image"]), scene["usable"], scene["similar"]),
-        ],
-        outputs=[np.empty((count, MOST, 3), np.float32), found, cost],
+        inputs=[np.arange(count, dtype=np.int32), around, canvas, visited, exemplar, NO_TREE, desk],
+        outputs=[cost],
     )
     return found[:, :2], cost
 
@@ -61,10 +80,16 @@ def test_every_site_takes_the_cheapest_candidate(seed: int, whole: bool, wrap: b
     if not whole:  # as on a surface, where neighbours lie anywhere
         offset[:, 1:] += rng.random(offset[:, 1:].shape, np.float32) - np.float32(0.5)
     found, cost = correct(made, around.sites, offset)
+    unturned = np.zeros(ROWS * COLUMNS, np.float32)
+    shown = made["position"], unturned, made["label"]
     for i, sites in enumerate(around.sites):
-        parts = [made[name] for name in ("image", "usable", "similar")]
-        place, least = naive.correct_site(
-            *parts, sites, offset[i], made["position"], made["colour"], made["label"], MOST
+        known = (sites >= 0) & (made["label"][sites] >= 0)
+        place, _, least = naive.correct_site(
+            *(made[name] for name in ("image", "usable", "similar")),
+            (sites, offset[i], unturned[: len(sites)]),
+            shown,
+            (offset[i], made["colour"][sites], known),
+            MOST,
         )
         np.testing.assert_allclose(cost[i], least, rtol=1e-3, atol=1e-5)
         np.testing.assert_allclose(found[i], place, atol=1e-4)

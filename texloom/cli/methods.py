@@ -4,7 +4,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
-from texloom.cli.options import METHODS, PRESET_METHODS, PRESETS, SEARCHES, choose
+from texloom.cli.options import (
+    METHODS,
+    PRESET_METHODS,
+    PRESETS,
+    SEARCHES,
+    SURFACE_METHODS,
+    SURFACE_PRESETS,
+    SWEEP_SEARCHES,
+    choose,
+)
 from texloom.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -14,6 +23,7 @@ if TYPE_CHECKING:
     from texloom.synthesis.patches import PatchSampling
     from texloom.synthesis.refine import Refine
     from texloom.synthesis.refine_patches import RefinePatches
+    from texloom.synthesis.sweep import Sweep
     from texloom.synthesis.synthesize import Method
 
 Task = Literal["fill", "fuse"]
@@ -26,10 +36,12 @@ class MethodWish:
     method: str
     search: str | None
     preset: str | None
-    refining: Mapping[str, Any] = field(default_factory=dict)  # parameters of Refine that are set
+    parameters: Mapping[str, Any] = field(default_factory=dict)  # of Refine or Sweep, those that are set
 
     def build(self) -> "Method":
         """Our method of that name, or with a preset the paper's own, with one of its searches."""
+        if self.method == "sweep":
+            return self._sweeping()
         if self.preset == "resampling":
             from texloom.search import SEARCHES as by_name
             from texloom.systems import resampling
@@ -43,8 +55,10 @@ class MethodWish:
     def grower(self, task: Task) -> "Grower":
         """The same where texture is there already, to be continued; a paper's own for that task.
 
-        Raises: ParameterError, if the methods of the preset begin with nothing.
+        Raises: ParameterError, if the method, or those of the preset, begin with nothing.
         """
+        if self.method == "sweep":
+            raise ParameterError("--method sweep grows whole textures and cannot continue one: choose another")
         if self.preset == "resampling":
             raise ParameterError(
                 "--preset resampling grows whole textures and cannot continue one: choose --preset refine, or none"
@@ -66,12 +80,19 @@ class MethodWish:
         if self.method == "refine":
             from texloom.synthesis.refine import Refine
 
-            return Refine(**self.refining)
+            return Refine(**self.parameters)
         if self.method == "refine-patches":
             from texloom.synthesis.refine_patches import RefinePatches
 
             return RefinePatches()
         return Optimize() if self.method == "optimize" else PatchSampling()
+
+    def _sweeping(self) -> "Sweep":
+        """Ours, or the talk's."""
+        from texloom.synthesis.sweep import Sweep
+        from texloom.systems import sweep
+
+        return replace(sweep.sweeps() if self.preset == "sweep" else Sweep(), **self.parameters)
 
     def _refining(self, task: Task | None) -> "Refine | RefinePatches":
         """Of the paper of ``refine``, what it does the task with, but for the parameters set."""
@@ -80,29 +101,36 @@ class MethodWish:
         if self.method == "refine-patches":
             return refine.patches()
         papers = {None: refine.refinement, "fill": refine.hole_refinement, "fuse": refine.region_refinement}
-        return replace(papers[task](), **self.refining)
+        return replace(papers[task](), **self.parameters)
 
 
-def wish(method: str | None, search: str | None, preset: str | None, **refining: str | float | None) -> MethodWish:
-    """The method asked for; ``refining`` are parameters of ``refine``, None where not given.
+def wish(
+    method: str | None, search: str | None, preset: str | None, *, surface: bool = False, **given: str | float | None
+) -> MethodWish:
+    """The method asked for; ``given`` are parameters of ``refine``, on a surface of ``sweep``; None: not given.
 
     Without a name it is the preset's first, or the default. Raises: ParameterError, for an unknown name, a search
-    without the preset it belongs to, or ``refining`` of another method.
+    without the preset it belongs to, or parameters of another method.
     """
     if preset is not None:
-        choose("preset", preset, PRESETS)
+        choose("preset", preset, SURFACE_PRESETS if surface else PRESETS)
+    known = SURFACE_METHODS[:-1] if surface else METHODS
+    offered = known if preset is None else PRESET_METHODS[preset]
+    method = choose("method", method or offered[0], known)
+    if method not in offered:
+        raise ParameterError(f"--preset {preset} has no {method}: choose {' or '.join(offered)}, or no preset")
+    if method == "sweep":
+        given["search"] = None if search is None else choose("search", search, SWEEP_SEARCHES)
+        search = None
     if search is not None:
         choose("search", search, SEARCHES)
         if preset is None:
             raise ParameterError(f"--search {search} is part of a paper's method: add --preset {PRESETS[0]}")
         if preset != PRESETS[0]:
             raise ParameterError(f"--search {search} is for --preset {PRESETS[0]}, {preset} has its own: leave it out")
-    offered = METHODS if preset is None else PRESET_METHODS[preset]
-    method = choose("method", method or offered[0], METHODS)
-    if method not in offered:
-        raise ParameterError(f"--preset {preset} has no {method}: choose {' or '.join(offered)}, or no preset")
-    given = {name: value for name, value in refining.items() if value is not None}
-    if given and method != "refine":
-        name, value = next(iter(given.items()))
-        raise ParameterError(f"--{name} {value} is not for {method}: add --method refine")
-    return MethodWish(method, search, preset, given)
+    parameters = {name: value for name, value in given.items() if value is not None}
+    owner = "sweep" if surface else "refine"
+    if parameters and method != owner:
+        name, value = next(iter(parameters.items()))
+        raise ParameterError(f"--{name} {value} is not for {method}: add --method {owner}")
+    return MethodWish(method, search, preset, parameters)

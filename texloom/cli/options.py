@@ -12,9 +12,13 @@ from texloom.errors import ParameterError
 METHODS = ("optimize", "patches", "refine", "refine-patches")
 SEARCHES = ("exhaustive", "pca", "pca-tree", "pca-clusters", "clusters")
 PRESETS = ("resampling", "refine")
-SURFACE_METHODS = (*METHODS, "texton")
-SURFACE_PRESETS = (*PRESETS, "texton")
-PRESET_METHODS = {"resampling": METHODS[:2], "refine": METHODS[2:]}  # those that the paper has, its own first
+SURFACE_METHODS = (*METHODS, "sweep", "texton")
+SURFACE_PRESETS = (*PRESETS, "sweep", "texton")
+PRESET_METHODS = {"resampling": METHODS[:2], "refine": METHODS[2:], "sweep": ("sweep",)}  # the paper's, its own first
+SWEEP_SEARCHES = ("coherence", "tree")
+SWEEP_ORDERS = ("parallel", "sequential")
+STARTS = ("blocks", "random")
+SHAPES = ("half", "causal", "full")
 ORDERS = ("parallel", "scan-line")
 DEVICES = ("cpu", "cuda")
 MESH_SUFFIXES = (".obj", ".ply", ".off", ".stl", ".glb", ".gltf")
@@ -29,9 +33,13 @@ Sample = Annotated[
 ]
 Method = Annotated[str | None, typer.Option(metavar="NAME", help=f"{', '.join(METHODS[:-1])} or {METHODS[-1]}.")]
 SurfaceMethod = Annotated[
-    str | None, typer.Option("--method", metavar="NAME", help=f"{', '.join(METHODS)} or {SURFACE_METHODS[-1]}.")
+    str | None, typer.Option("--method", metavar="NAME", help=f"{', '.join(SURFACE_METHODS[:-1])} or texton.")
 ]
 Search = Annotated[str | None, typer.Option(metavar="NAME", help=f"{', '.join(SEARCHES[:-1])} or {SEARCHES[-1]}.")]
+SurfaceSearch = Annotated[
+    str | None,
+    typer.Option("--search", metavar="NAME", help=f"With sweep: {' or '.join(SWEEP_SEARCHES)}; with a preset its own."),
+]
 Preset = Annotated[str | None, typer.Option(metavar="KEY", help=f"A paper's own parameters: {', '.join(PRESETS)}.")]
 SurfacePreset = Annotated[
     str | None, typer.Option("--preset", metavar="KEY", help=f"A paper's own parameters: {', '.join(SURFACE_PRESETS)}.")
@@ -46,6 +54,18 @@ Threshold = Annotated[
 Difference = Annotated[
     str | None, typer.Option(metavar="NAME", help="With refine: what changes is a mean over pixels, or a sum.")
 ]
+Levels = Annotated[int | None, typer.Option(metavar="N", min=1, max=8, help="With sweep: of points; 3, or fewer.")]
+Start = Annotated[str | None, typer.Option(metavar="NAME", help=f"With sweep: {' or '.join(STARTS)}.")]
+Shape = Annotated[
+    str | None, typer.Option(metavar="NAME", help=f"With sweep from random: first compare {', '.join(SHAPES)}.")
+]
+SweepOrder = Annotated[
+    str | None, typer.Option("--order", metavar="NAME", help=f"With sweep: {' or '.join(SWEEP_ORDERS)}.")
+]
+SweepWidth = Annotated[
+    int | None, typer.Option("--window", metavar="N", help="With sweep: texels a side of a neighbourhood; 7.")
+]
+SweepPasses = Annotated[int | None, typer.Option("--passes", metavar="N", help="With sweep: sweeps of each level; 2.")]
 Seed = Annotated[int, typer.Option(metavar="N", help="Same seed, same pixels.")]
 Device = Annotated[str, typer.Option(metavar="NAME", help="cpu or cuda.")]
 Threads = Annotated[int | None, typer.Option(metavar="N", min=1, max=1024, help="CPU threads; all cores if not given.")]

@@ -56,8 +56,14 @@ def surface(
     material: Annotated[str | None, typer.Option(metavar="NAME", help="Texture only this material.")] = None,
     preview: Annotated[Path | None, typer.Option(metavar="FILE", help="A picture from four sides (.png).")] = None,
     method: options.SurfaceMethod = None,
-    search: options.Search = None,
+    search: options.SurfaceSearch = None,
     preset: options.SurfacePreset = None,
+    levels: options.Levels = None,
+    start: options.Start = None,
+    shape: options.Shape = None,
+    order: options.SweepOrder = None,
+    window: options.SweepWidth = None,
+    passes: options.SweepPasses = None,
     patch: Annotated[
         float | None,
         typer.Option(metavar="N", min=0, help="With texton: texels across a patch of faces; 0 leaves each alone."),
@@ -85,9 +91,10 @@ def surface(
 ) -> None:
     """Grow texture over a mesh of any shape, along a direction and a scale field; several samples where a map says."""
     quilting = QuiltWish(patch, rounds, blend, distance, published=preset == "texton")
+    sweeping = {"levels": levels, "start": start, "shape": shape, "order": order, "window": window, "passes": passes}
     quilts = preset == "texton" or (method == "texton" and preset is None)
     if quilts:
-        quilting.check(method, search, fuse, analysis)
+        quilting.check(method, search=search, fuse=fuse, analysis=analysis, **sweeping)
     else:
         quilting.refuse(edges, samples)
     if repeats is not None and texel is not None:
@@ -104,7 +111,7 @@ def surface(
         texel=texel,
         guides=Guides(direction, scale, symmetry, progressive),
         fusion=Fusion(fuse, palette, options.choose("belts", belts or BELTS[0], BELTS)),
-        method=None if quilts else methods.wish(method, search, preset),
+        method=None if quilts else methods.wish(method, search, preset, surface=True, **sweeping),
         quilting=quilting if quilts else None,
         preset=preset,
         analysis=analysis,

@@ -52,13 +52,13 @@ class QuiltWish:
             if value is not None:
                 raise ParameterError(f"--{name} {value} is for --method texton: add it, or leave --{name} out")
 
-    def check(self, method: str | None, search: str | None, fuse: str | None, analysis: Path | None) -> None:
+    def check(self, method: str | None, **others: object) -> None:
         """Raises: ParameterError, for options of other methods."""
         if method not in (None, "texton"):
             raise ParameterError(f"--preset texton has no {method}: leave --method out, or choose no preset")
         if self.published and (self.patch or self.rounds):
             raise ParameterError("--preset texton quilts every face alone, once: leave --patch and --rounds out")
-        for name, value in (("search", search), ("fuse", fuse), ("analysis", analysis)):
+        for name, value in others.items():
             if value is not None:
                 raise ParameterError(f"--{name} {value} is not for --method texton: leave it out")
 

@@ -20,6 +20,24 @@ class Neighbourhoods:
     turn: Float32[np.ndarray, "n k"] | None = None
 
 
+@dataclass(frozen=True, eq=False)
+class Stencils:
+    """``k`` samples around each of ``n`` sites, for what is shown there to be read.
+
+    A sample shows the mean of ``corner`` sites under ``weights`` (None: of the one site); -1 is no site. It lies at
+    ``offset`` [row, column] texels from the middle site, in its frame; one row where all stencils are alike.
+    """
+
+    sites: Int32[np.ndarray, "n k corner"]
+    weights: Float32[np.ndarray, "n k corner"] | None
+    offset: Float32[np.ndarray, "n_or_1 k 2"]
+
+
+def as_stencils(around: Neighbourhoods) -> Stencils:
+    """The neighbouring sites themselves as the samples."""
+    return Stencils(around.sites[:, :, None], None, around.offset)
+
+
 NEAR = 3
 """Texels within which a neighbourhood holds every site; and where frames turn, its greatest reach."""
 

@@ -5,13 +5,15 @@ Chen, Liu & Dong, "Local resampling for patch-based texture synthesis in vector 
 
 import numpy as np
 import warp as wp
-from jaxtyping import Complex64, Int32
+from jaxtyping import Complex64, Float32, Int32
 
+from texloom.domain.neighbourhoods import Stencils
 from texloom.domain.patches import Patches
 from texloom.domain.reach import Covering
 from texloom.field.trace import Flow, Samples, starts
 from texloom.kernels.launch import launch, thread_count
 from texloom.kernels.meet import meet_half_way
+from texloom.kernels.stencils import trace_stencils
 from texloom.kernels.trace import trace_squares
 
 APART_AT_LEAST, APART_PER_TEXEL = 1.5, 0.2
@@ -60,6 +62,22 @@ def lay_patches(
         cover_position=position,
         cover_turn=turn,
     )
+
+
+def lay_stencils(flow: Flow, sites: Int32[np.ndarray, "n"], width: int) -> Stencils:
+    """Squares of ``width × width`` samples traced from sites: so few texels that one path to each is enough."""
+    origins, shape = starts(flow), (len(sites), width * width, 3)
+    laid = Stencils(np.empty(shape, np.int32), np.empty(shape, np.float32), _steps(width))
+    begin = [part[sites] for part in (origins.face, origins.place, origins.heading)]
+    inputs = [flow.record, flow.twin, flow.faces, flow.order, width, *begin]
+    launch(trace_stencils, len(sites), inputs=inputs, outputs=[laid.sites, laid.weights])
+    return laid
+
+
+def _steps(width: int) -> Float32[np.ndarray, "1 sample 2"]:
+    """[row, column] of every sample of a square from its middle one."""
+    steps = np.stack(np.divmod(np.arange(width * width), width), axis=1) - width // 2
+    return steps.astype(np.float32)[None]
 
 
 def trace_network(flow: Flow, origins: Samples, centres: Int32[np.ndarray, "patch"], width: int) -> Samples:

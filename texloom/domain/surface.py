@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Complex64, Float, Float32, Float64, Int32
 
-from texloom.domain.neighbourhoods import Neighbourhoods
-from texloom.domain.network import lay_patches
+from texloom.domain.neighbourhoods import Neighbourhoods, Stencils
+from texloom.domain.network import lay_patches, lay_stencils
 from texloom.domain.patches import Patches
 from texloom.domain.scatter import scatter, site_neighbours
 from texloom.errors import FieldError, ParameterError
@@ -117,6 +117,10 @@ class Surface:
     def patches(self, centres: Int32[np.ndarray, "patch"], width: int) -> Patches:
         """Patches traced along the field and its orthogonal; they end at boundaries and singularities."""
         return lay_patches(self.flow, centres, width, axis=self.axis)
+
+    def stencils(self, width: int) -> Stencils:
+        """``width × width`` samples around every site, by steps of a texel along the field and its orthogonal."""
+        return lay_stencils(self.flow, np.arange(self.count, dtype=np.int32), width)
 
     @cached_property
     def _frames(self) -> tuple[Float32[np.ndarray, "site 3"], ...]:

@@ -1,6 +1,6 @@
 """Gaussian pyramid of any image: each level half the size of the one before."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float32
@@ -8,6 +8,7 @@ from jaxtyping import Bool, Float32
 from texloom.arrays import Image
 from texloom.errors import ParameterError
 from texloom.exemplar.blas import over_blocks
+from texloom.exemplar.exemplar import Exemplar, Part
 
 _BLOCK = 16  # coarse rows blurred at once
 
@@ -35,6 +36,17 @@ def gaussian_pyramid(image: Image, levels: int, *, usable: Bool[np.ndarray, "row
     return pyramid
 
 
+def stack_pyramid(exemplar: Exemplar, levels: int) -> list[Exemplar]:
+    """``levels`` stacks, finest first, the first as given: every map as in ``gaussian_pyramid``, mask and parts too."""
+    maps = {name: gaussian_pyramid(m.image, levels, usable=exemplar.mask) for name, m in exemplar.maps.items()}
+    stacks = [exemplar]
+    for level in range(1, levels):
+        smaller = {name: replace(exemplar.maps[name], image=pyramid[level].image) for name, pyramid in maps.items()}
+        parts = tuple(_smaller(part, 2**level) for part in exemplar.parts)
+        stacks.append(Exemplar(smaller, next(iter(maps.values()))[level].usable, parts))
+    return stacks
+
+
 def coarser(level: Level) -> Level:
     """The next level of the pyramid."""
     if level.usable is None:
@@ -43,6 +55,11 @@ def coarser(level: Level) -> Level:
     total = halve(weight)
     mean = halve(level.image * weight) / np.maximum(total, np.float32(1e-6))
     return Level(mean, np.ascontiguousarray(level.usable[::2, ::2]))
+
+
+def _smaller(part: Part, times: int) -> Part:
+    """The rectangle in an image so many times smaller."""
+    return Part(part.row // times, part.column // times, -(-part.rows // times), -(-part.columns // times))
 
 
 def halve(image: Image) -> Image:

@@ -11,12 +11,13 @@ argument, and thread ``t`` works on item ``start + t``:
 
     launch(double, len(values), inputs=[values], outputs=[doubled])
 
-A kernel writes its own item of the outputs only, so the result does not depend on the number of threads.
+A kernel writes its own item of the outputs only, so the result does not depend on the number of threads. Where it
+takes a ``wp.struct``, it is given a dict of the struct's fields.
 """
 
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -125,13 +126,21 @@ class Repeated:
 
 def _share(kernel: Any, values: Sequence[Any], device: str = "cpu", skip: int = 1) -> list[Any]:
     """Warp views of NumPy arrays, in the element type the kernel declares (vectors too); anything else as it is."""
-    shared = []
-    for declared, value in zip(kernel.adj.args[skip:], values, strict=True):
-        if isinstance(value, np.ndarray):
-            assert value.flags.c_contiguous, f"{declared.label}: kernels take C-contiguous arrays"
-            value = wp.array(value, dtype=declared.type.dtype, copy=False, device=device)
-        shared.append(value)
-    return shared
+    declared = kernel.adj.args[skip:]
+    return [_view(it.type, value, it.label, device) for it, value in zip(declared, values, strict=True)]
+
+
+def _view(declared: Any, value: Any, name: str, device: str) -> Any:
+    """One of them."""
+    if isinstance(value, np.ndarray):
+        assert value.flags.c_contiguous, f"{name}: kernels take C-contiguous arrays"
+        return wp.array(value, dtype=declared.dtype, copy=False, device=device)
+    if isinstance(value, Mapping):
+        struct = declared()
+        for field, part in value.items():
+            setattr(struct, field, _view(declared.vars[field].type, part, f"{name}.{field}", device))
+        return struct
+    return value
 
 
 def _launch_on_device(kernel: Any, count: int, inputs: Sequence[Any], outputs: Sequence[Any]) -> None:
@@ -139,6 +148,15 @@ def _launch_on_device(kernel: Any, count: int, inputs: Sequence[Any], outputs: S
     on_device = _share(kernel, (*inputs, *outputs), _Machine.device)
     wp.launch(kernel, dim=count, inputs=[0, *on_device], device=_Machine.device)
     for target, result in zip(outputs, on_device[len(inputs) :], strict=True):
+        _copy_back(target, result)
+
+
+def _copy_back(target: Any, result: Any) -> None:
+    """What the device wrote into an output."""
+    if isinstance(target, Mapping):
+        for field, part in target.items():
+            _copy_back(part, getattr(result, field))
+    else:
         target[...] = result.numpy().reshape(target.shape)
 
 

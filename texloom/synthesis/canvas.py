@@ -7,6 +7,7 @@ from jaxtyping import Bool, Float32, Int32
 
 from texloom.arrays import Image
 from texloom.domain.domain import Domain
+from texloom.domain.levels import Beside
 from texloom.sources import SourceMap
 from texloom.synthesis.gaps import fill_gaps
 
@@ -60,10 +61,31 @@ class Canvas:
         self.colour[bare] = image[texel[:, 0], texel[:, 1]]
         self.label[bare] = self.next_label  # a patch of its own, so that correction visits its border
 
+    def continued(self, beside: Beside, image: Image, scale: float) -> "Canvas":
+        """What this canvas shows, continued to the places beside its sites, in an image ``scale`` times as large."""
+        turn = self.turn[beside.site]
+        row, column = beside.offset.T
+        cosine, sine = np.cos(turn), np.sin(turn)
+        way = np.stack([cosine * row + sine * column, cosine * column - sine * row], axis=1)
+        canvas = Canvas.empty(len(turn), image.shape[2])
+        canvas.position[:] = np.float32(scale) * (self.position[beside.site] + way)
+        canvas.turn[:] = turn + beside.turn
+        canvas.label[:] = self.label[beside.site]
+        canvas.colour[:] = _between(image, canvas.position)
+        return canvas
+
     def sources(self) -> SourceMap:
         """One source a site."""
         turn = self.turn[:, None] if self.turn.any() else None
         return SourceMap(self.position[:, None], np.ones((len(self.position), 1), np.float32), turn)
+
+
+def _between(image: Image, position: Float32[np.ndarray, "n 2"]) -> Float32[np.ndarray, "n channel"]:
+    """The image between its texels, clamped at its border."""
+    from scipy.ndimage import map_coordinates
+
+    channels = [map_coordinates(channel, position.T, order=1, mode="nearest") for channel in np.moveaxis(image, 2, 0)]
+    return np.stack(channels, axis=1)
 
 
 def nearest_usable(texel: Int32[np.ndarray, "n 2"], usable: Bool[np.ndarray, "row column"]) -> Int32[np.ndarray, "n 2"]:
