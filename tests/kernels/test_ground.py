@@ -3,7 +3,7 @@
 import numpy as np
 import warp as wp
 
-from tests.meshes import as_mesh, cylinder, flat_square, sphere
+from tests.meshes import as_mesh, cylinder, flat_square, sphere, torus
 from texloom.kernels.ground import slide, walk
 from texloom.kernels.launch import launch
 from texloom.kernels.points import settle
@@ -103,6 +103,18 @@ def test_there_and_back() -> None:
     home, *_ = walked(mesh, shorter - there, 0.5, face_there, place_there)
     near = np.linalg.norm(home - begin, axis=1)
     assert np.median(near) < 1e-4
+
+
+def test_a_walk_along_edges_goes_on() -> None:
+    """Where rounding tells on which side of an edge it is, it does not go back and forth over it."""
+    mesh = torus()
+    face, corner = (part.ravel().astype(np.int32) for part in np.indices(mesh.faces.shape))
+    tails, heads = np.eye(3)[corner], np.eye(3)[(corner + 1) % 3]
+    along = np.einsum("pc,pcx->px", heads - tails, mesh.vertices[mesh.faces[face]])
+    for share in np.random.default_rng(0).uniform(0, 1, 3)[:, None]:
+        for way in (along, -along):
+            *_, whole = walked(mesh, way, 0.9, face, (1 - share) * tails + share * heads)
+            assert whole.all()
 
 
 def test_descending_finds_the_closest_place() -> None:

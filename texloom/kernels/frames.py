@@ -1,32 +1,114 @@
-"""Triangles in their own 2-D frames (corner 0 at the origin, corner 1 on the first axis), and vectors in them."""
+"""Triangles in their own 2-D frames (corner 0 at the origin, corner 1 on the first axis), and vectors in them.
+
+A triangle's shape is (a, b, c): its corners lie at (0, 0), (a, 0) and (b, c). Functions on ``Any`` serve both
+precisions: the tracer's and the points'.
+"""
+
+from typing import Any
 
 import warp as wp
+
+
+@wp.func
+def shape_of(p: wp.vec3d, q: wp.vec3d, r: wp.vec3d) -> wp.vec3d:
+    """The shape of a triangle in space. A needle keeps a height to divide by."""
+    along = q - p
+    a = wp.length(along)
+    x = along / wp.max(a, wp.float64(1.0e-300))
+    return wp.vec3d(a, wp.dot(r - p, x), wp.max(wp.length(wp.cross(x, r - p)), wp.float64(1.0e-6) * a))
+
+
+@wp.func
+def inverse_of(shape: wp.vec3d) -> wp.vec3d:
+    """1 / a, b / (a c), 1 / c: what ``rates`` take."""
+    one = wp.float64(1.0)
+    return wp.vec3d(one / shape[0], shape[1] / (shape[0] * shape[2]), one / shape[2])
+
+
+@wp.func
+def direction_of_edge(shape: wp.vec3d, e: int) -> wp.vec2d:
+    """From corner e towards the next, a unit vector."""
+    a = shape[0]
+    b = shape[1]
+    c = shape[2]
+    zero = wp.float64(0.0)
+    x = wp.where(e == 0, a, wp.where(e == 1, b - a, -b))
+    y = wp.where(e == 0, zero, wp.where(e == 1, c, -c))
+    return wp.normalize(wp.vec2d(x, y))
+
+
+@wp.func
+def turn_between(shape: wp.vec3d, e: int, onto: wp.vec3d, t: int) -> wp.vec2d:
+    """The rotation from the frame of a triangle to that of the one across its edge e, which is edge t there."""
+    mine = direction_of_edge(shape, e)
+    theirs = direction_of_edge(onto, t)  # which runs the other way
+    x = -(theirs[0] * mine[0] + theirs[1] * mine[1])
+    y = -(theirs[1] * mine[0] - theirs[0] * mine[1])
+    return wp.vec2d(x, y)
+
+
+@wp.func
+def times(p: Any, q: Any):
+    """Product of complex numbers."""
+    return type(p)(p[0] * q[0] - p[1] * q[1], p[0] * q[1] + p[1] * q[0])
+
+
+@wp.func
+def rates(inverse: Any, way: Any):
+    """Change of the barycentric coordinates along ``way``."""
+    r1 = way[0] * inverse[0] - way[1] * inverse[1]
+    r2 = way[1] * inverse[2]
+    return type(inverse)(-r1 - r2, r1, r2)
+
+
+@wp.func
+def time_to_zero(at: Any, rate: Any):
+    """When a coordinate reaches 0; never, unless it falls."""
+    return wp.where(rate < type(rate)(0.0), -at / rate, type(rate)(1.0e30))
+
+
+@wp.func
+def exit_of(at: Any, rate: Any):
+    """When the first coordinate reaches 0, and which: the corner opposite the edge that is reached."""
+    t0 = time_to_zero(at[0], rate[0])
+    t1 = time_to_zero(at[1], rate[1])
+    t2 = time_to_zero(at[2], rate[2])
+    when = wp.min(t0, wp.min(t1, t2))
+    return when, wp.where(t0 == when, 0, wp.where(t1 == when, 1, 2))
+
+
+@wp.func
+def component(p: Any, i: int):
+    return wp.where(i == 0, p[0], wp.where(i == 1, p[1], p[2]))
+
+
+@wp.func
+def between(e: int, share: Any):
+    """The point on edge e that has come so far from corner e to the next."""
+    rest = type(share)(1.0) - share
+    zero = type(share)(0.0)
+    return wp.vector(
+        wp.where(e == 0, rest, wp.where(e == 1, zero, share)),
+        wp.where(e == 1, rest, wp.where(e == 2, zero, share)),
+        wp.where(e == 2, rest, wp.where(e == 0, zero, share)),
+    )
+
+
+@wp.func
+def across(at: Any, e: int, t: int):
+    """A place on edge e of a triangle, in the one beyond, whose edge t that is."""
+    ahead = component(at, e)
+    share = ahead / (ahead + component(at, wp.where(e == 2, 0, e + 1)))
+    return between(t, wp.clamp(share, type(share)(0.0), type(share)(1.0)))
 
 
 @wp.kernel(enable_backward=False)
 def flatten_triangles(
     start: int, vertices: wp.array(dtype=wp.vec3d), faces: wp.array2d(dtype=int), corners: wp.array(dtype=wp.vec3d)
 ):
-    """(a, b, c) of every triangle: corners at (0, 0), (a, 0) and (b, c). A needle keeps a height to divide by."""
+    """The shape of every triangle."""
     f = start + wp.tid()
-    p = vertices[faces[f, 0]]
-    q = vertices[faces[f, 1]] - p
-    r = vertices[faces[f, 2]] - p
-    a = wp.length(q)
-    x = q / wp.max(a, wp.float64(1.0e-300))
-    corners[f] = wp.vec3d(a, wp.dot(r, x), wp.max(wp.length(wp.cross(x, r)), wp.float64(1.0e-6) * a))
-
-
-@wp.func
-def direction_of_edge(corners: wp.array(dtype=wp.vec3d), f: int, e: int) -> wp.vec2d:
-    """From corner e towards the next, a unit vector."""
-    a = corners[f][0]
-    b = corners[f][1]
-    c = corners[f][2]
-    zero = wp.float64(0.0)
-    x = wp.where(e == 0, a, wp.where(e == 1, b - a, -b))
-    y = wp.where(e == 0, zero, wp.where(e == 1, c, -c))
-    return wp.normalize(wp.vec2d(x, y))
+    corners[f] = shape_of(vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]])
 
 
 @wp.kernel(enable_backward=False)
@@ -41,29 +123,20 @@ def pack_records(
 ):
     """What the tracer reads of a triangle (``texloom.kernels.trace``)."""
     f = start + wp.tid()
-    a = corners[f][0]
-    b = corners[f][1]
-    c = corners[f][2]
-    record[f, 0] = float(a)
-    record[f, 1] = float(b)
-    record[f, 2] = float(c)
     for e in range(3):
         record[f, 3 + 2 * e] = power[f, e][0]
         record[f, 4 + 2 * e] = power[f, e][1]
         record[f, 9 + e] = texel[faces[f, e]]
         halfedge = twin[f, e]
-        x = wp.float64(1.0)
-        y = wp.float64(0.0)
+        turn = wp.vec2d(wp.float64(1.0), wp.float64(0.0))
         if halfedge >= 0:
-            mine = direction_of_edge(corners, f, e)
-            theirs = direction_of_edge(corners, halfedge // 3, halfedge % 3)  # which runs the other way
-            x = -(theirs[0] * mine[0] + theirs[1] * mine[1])
-            y = -(theirs[1] * mine[0] - theirs[0] * mine[1])
-        record[f, 12 + 2 * e] = float(x)
-        record[f, 13 + 2 * e] = float(y)
-    record[f, 18] = float(wp.float64(1.0) / a)
-    record[f, 19] = float(b / (a * c))
-    record[f, 20] = float(wp.float64(1.0) / c)
+            turn = turn_between(corners[f], e, corners[halfedge // 3], halfedge % 3)
+        record[f, 12 + 2 * e] = float(turn[0])
+        record[f, 13 + 2 * e] = float(turn[1])
+    inverse = inverse_of(corners[f])
+    for k in range(3):
+        record[f, k] = float(corners[f][k])
+        record[f, 18 + k] = float(inverse[k])
     for k in range(21, 24):
         record[f, k] = 0.0
 

@@ -9,6 +9,8 @@ on the other side of the one from corner c to the next, -1 at the rim. A point o
 
 import warp as wp
 
+from texloom.kernels.frames import across, between, exit_of, inverse_of, rates, shape_of, times, turn_between
+
 MOST_FACES = wp.constant(4096)  # crossed by one walk
 TINY = wp.constant(wp.float64(1.0e-290))
 
@@ -38,12 +40,9 @@ def cross_of(vertex: wp.array(dtype=wp.vec3d), corner: wp.array(dtype=int), f: i
 
 
 @wp.func
-def on_edge(e: int, share: wp.float64) -> wp.vec3d:
-    """The point on edge e that has come so far from corner e to the next."""
-    b = wp.vec3d()
-    b[e] = wp.float64(1.0) - share
-    b[(e + 1) % 3] = share
-    return b
+def shape_in(vertex: wp.array(dtype=wp.vec3d), corner: wp.array(dtype=int), f: int) -> wp.vec3d:
+    """The shape of face f (``texloom.kernels.frames``)."""
+    return shape_of(vertex[corner[3 * f]], vertex[corner[3 * f + 1]], vertex[corner[3 * f + 2]])
 
 
 @wp.func
@@ -58,56 +57,41 @@ def walk(
 ):
     """Straight on over the ground for ``length``, starting along the part of ``way`` in the first face's plane.
 
-    Faces are laid flat one after the other. It ends early at the rim, and where a face has no area.
+    Faces are laid flat one after the other. It ends early at the rim, and in a face whose first edge has no length.
     Returns face, place and whether it went all the way.
     """
-    zero = wp.float64(0.0)
     f = int(face)
-    b = barycentric
+    at = barycentric
     left = wp.float64(length)
-    normal = cross_of(vertex, corner, f)
-    squared = wp.dot(normal, normal)
-    d = way
-    if squared > TINY:
-        d = way - normal * (wp.dot(way, normal) / squared)
-    size = wp.length(d)
-    if size <= TINY or squared <= TINY:
-        return f, b, False
-    d = d / size
+    shape = shape_in(vertex, corner, f)
+    first = wp.normalize(vertex[corner[3 * f + 1]] - vertex[corner[3 * f]])
+    second = wp.normalize(wp.cross(cross_of(vertex, corner, f), first))
+    heading = wp.normalize(wp.vec2d(wp.dot(way, first), wp.dot(way, second)))
     entry = int(-1)  # the corner opposite the edge we came in by
     for _ in range(MOST_FACES):
-        rate = wp.vec3d()
-        for c in range(3):
-            side = vertex[corner[3 * f + (c + 2) % 3]] - vertex[corner[3 * f + (c + 1) % 3]]
-            rate[c] = wp.dot(d, wp.cross(normal, side)) / squared
-        when = wp.float64(left)
-        leave = int(-1)
-        for c in range(3):
-            if c != entry and rate[c] < zero and -b[c] / rate[c] < when:
-                when = -b[c] / rate[c]
-                leave = c
-        b = wp.max(b + when * rate, wp.vec3d())
-        b = b / (b[0] + b[1] + b[2])
+        if shape[0] <= TINY:
+            return f, at, False
+        rate = rates(inverse_of(shape), heading)
+        if entry >= 0:
+            rate[entry] = wp.max(rate[entry], wp.float64(0.0))
+        when, leave = exit_of(at, rate)
+        if left <= when:
+            at = wp.max(at + left * rate, wp.vec3d())
+            return f, at / (at[0] + at[1] + at[2]), True
+        at = wp.max(at + when * rate, wp.vec3d())
         left = left - when
-        if leave < 0:
-            return f, b, True
         e = (leave + 1) % 3
-        t = twin[3 * f + e]
-        if t < 0:
-            return f, b, False
-        share = b[(e + 1) % 3] / wp.max(b[e] + b[(e + 1) % 3], TINY)
-        f = t // 3
-        b = on_edge(t - 3 * f, wp.float64(1.0) - share)
-        entry = (t - 3 * f + 2) % 3
-        normal = cross_of(vertex, corner, f)
-        squared = wp.dot(normal, normal)
-        if squared <= TINY:
-            return f, b, False
-        along = wp.normalize(vertex[corner[after(t)]] - vertex[corner[t]])
-        forth = wp.dot(d, along)
-        inward = wp.normalize(wp.cross(normal, along))
-        d = forth * along + wp.sqrt(wp.max(wp.float64(1.0) - forth * forth, zero)) * inward
-    return f, b, False
+        h = twin[3 * f + e]
+        if h < 0:
+            return f, at / (at[0] + at[1] + at[2]), False
+        f = h // 3
+        t = h - 3 * f
+        at = across(at, e, t)
+        entry = (t + 2) % 3
+        onto = shape_in(vertex, corner, f)
+        heading = times(heading, turn_between(shape, e, onto, t))
+        shape = onto
+    return f, at, False
 
 
 @wp.func
@@ -135,7 +119,7 @@ def nearest_in_face(vertex: wp.array(dtype=wp.vec3d), corner: wp.array(dtype=int
         best = wp.float64(-1.0)
         for e in range(3):
             share = share_between(p, vertex[corner[3 * f + e]], vertex[corner[3 * f + (e + 1) % 3]])
-            candidate = on_edge(e, share)
+            candidate = between(e, share)
             away = wp.length_sq(place_at(vertex, corner, f, candidate) - p)
             if best < zero or away < best:
                 best = away

@@ -8,7 +8,8 @@ Arrays of the triangulation are those of ``halfedges``, arrays of the ground and
 import warp as wp
 
 from texloom.kernels.delaunay import WELL_LAID, facing
-from texloom.kernels.ground import after, before, descend, on_edge, place_at, share_between, slide, walk
+from texloom.kernels.frames import between
+from texloom.kernels.ground import after, before, descend, place_at, share_between, slide, walk
 from texloom.kernels.halfedges import MOST_AROUND, fan_start, next_around
 
 HALF = wp.constant(wp.float64(0.5))
@@ -157,7 +158,7 @@ def repel(
         )
         f = h // 3
         e = h - 3 * f
-        b = on_edge(e, share)
+        b = between(e, share)
     else:
         local = spacing * scale[v]
         way = gain * local * push(tail, twin, at, scale, begin, reach * spacing) + swing * (at[v] - last[i])
@@ -227,7 +228,7 @@ def halve(
         h, s = slide(vertex, corner, following, leading, h, s, HALF * length)
         f = h // 3
         e = h - 3 * f
-        b = on_edge(e, s)
+        b = between(e, s)
     else:
         # From either end half way straight on, with and without going down to the nearest place; where the normals
         # part, also up the ridge that may lie between, or down the groove. The normal tells the wrong side of a sheet

@@ -12,6 +12,8 @@ face -1. Branches that depend on the place are avoided: a wrong guess costs as m
 
 import warp as wp
 
+from texloom.kernels.frames import across, component, exit_of, rates, times
+
 # Products and sums may fuse, divisions by one number share its inverse: a quarter of the time
 CPU_FLAGS = f"{wp.config.cpu_compiler_flags or '-march=native'} -funsafe-math-optimizations -fno-slp-vectorize"
 wp.set_module_options({"cpu_compiler_flags": CPU_FLAGS})
@@ -21,12 +23,6 @@ FAINTEST = wp.constant(0.05)  # power below this has no direction: a singularity
 SHARPEST = wp.constant(0.8)  # radians turned within a face
 HEAD_ON = wp.constant(0.5)  # cosine of the angle to an edge, below which two faces' fields meet head on
 MOST_AMBIGUOUS = wp.constant(2.2)  # radians turned by the power: near π two roots are equally near
-
-
-@wp.func
-def times(p: wp.vec2, q: wp.vec2) -> wp.vec2:
-    """Product of complex numbers."""
-    return wp.vec2(p[0] * q[0] - p[1] * q[1], p[0] * q[1] + p[1] * q[0])
 
 
 @wp.func
@@ -102,49 +98,15 @@ def edge(record: wp.array2d(dtype=float), f: int, e: int) -> wp.vec2:
 
 
 @wp.func
-def rates(record: wp.array2d(dtype=float), f: int, way: wp.vec2) -> wp.vec3:
-    """Change of the barycentric coordinates along ``way``."""
-    r1 = way[0] * record[f, 18] - way[1] * record[f, 19]
-    r2 = way[1] * record[f, 20]
-    return wp.vec3(-r1 - r2, r1, r2)
-
-
-@wp.func
-def time_to_zero(at: float, rate: float) -> float:
-    """When a coordinate reaches 0; never, unless it falls."""
-    return wp.where(rate < 0.0, -at / rate, 1.0e30)
-
-
-@wp.func
-def exit_of(at: wp.vec3, rate: wp.vec3):
-    """When the first coordinate reaches 0, and which: the corner opposite the edge that is reached."""
-    t0 = time_to_zero(at[0], rate[0])
-    t1 = time_to_zero(at[1], rate[1])
-    t2 = time_to_zero(at[2], rate[2])
-    when = wp.min(t0, wp.min(t1, t2))
-    return when, wp.where(t0 == when, 0, wp.where(t1 == when, 1, 2))
+def rates_along(record: wp.array2d(dtype=float), f: int, way: wp.vec2) -> wp.vec3:
+    """Change of the barycentric coordinates in face f."""
+    return rates(wp.vec3(record[f, 18], record[f, 19], record[f, 20]), way)
 
 
 @wp.func
 def turn_across(record: wp.array2d(dtype=float), f: int, e: int) -> wp.vec2:
     """The rotation from the frame of face f to that of the face across its edge e."""
     return wp.vec2(record[f, 12 + 2 * e], record[f, 13 + 2 * e])
-
-
-@wp.func
-def component(p: wp.vec3, i: int) -> float:
-    return wp.where(i == 0, p[0], wp.where(i == 1, p[1], p[2]))
-
-
-@wp.func
-def between(e: int, share: float) -> wp.vec3:
-    """The point on edge e that has come so far from corner e to the next."""
-    rest = 1.0 - share
-    return wp.vec3(
-        wp.where(e == 0, rest, wp.where(e == 1, 0.0, share)),
-        wp.where(e == 1, rest, wp.where(e == 2, 0.0, share)),
-        wp.where(e == 2, rest, wp.where(e == 0, 0.0, share)),
-    )
 
 
 @wp.func
@@ -169,7 +131,7 @@ def walk(
     left = float(texels)
     entry = int(-1)  # the corner opposite the edge we came in by
     for _ in range(MOST_FACES):
-        rate = rates(record, f, times(heading, aside))
+        rate = rates_along(record, f, times(heading, aside))
         when, side = exit_of(at, rate)
         middle = at + (0.5 * wp.min(when, left * texel_at(record, f, at))) * rate
         texel = texel_at(record, f, middle)
@@ -177,14 +139,14 @@ def walk(
             heading = nearest_root(power_at(record, f, middle), heading, order)
             if heading[0] == 0.0 and heading[1] == 0.0:
                 return -1, at, heading
-            rate = rates(record, f, times(heading, aside))
+            rate = rates_along(record, f, times(heading, aside))
             if entry >= 0 and component(rate, entry) < 0.0:
                 # The fields of two faces press towards their edge: slide along it, unless they meet head on
                 along = wp.normalize(edge(record, f, (entry + 1) % 3))
                 speed = wp.dot(times(heading, aside), along)
                 if wp.abs(speed) < HEAD_ON:
                     return -1, at, heading
-                rate = rates(record, f, wp.sign(speed) * along)
+                rate = rates_along(record, f, wp.sign(speed) * along)
                 rate[entry] = 0.0
             when, side = exit_of(at, rate)
         if left * texel <= when:
@@ -203,11 +165,9 @@ def walk(
         if halfedge < 0:
             return -1, at, heading
         heading = times(heading, turn_across(record, f, e))
-        ahead = component(at, e)
-        share = wp.clamp(ahead / (ahead + component(at, wp.where(e == 2, 0, e + 1))), 0.0, 1.0)
         f = halfedge // 3
         t = halfedge - 3 * f
-        at = between(t, share)
+        at = across(at, e, t)
         entry = wp.where(t == 0, 2, t - 1)
     return -1, at, heading
 

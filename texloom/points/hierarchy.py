@@ -87,10 +87,10 @@ def hierarchy(
 ) -> Hierarchy:
     """Even points on a mesh, ``counts`` of them on each level; the points of a level stay in all finer ones.
 
-    Points repel their neighbours on the surface (Turk 1991), those of a boundary along it; on a finer level only the
-    new ones move. Distances are proportional to ``scale``, one number a vertex. The triangulation moves along and
-    flips towards Delaunay; it keeps the mesh's topology, however near to each other two sheets come. About 10 µs
-    a point.
+    Points repel their neighbours on the surface (Turk 1991), those of a boundary along it; sharp corners of boundaries
+    keep theirs, and on a finer level only the new ones move. Distances are proportional to ``scale``, one number a
+    vertex. The triangulation moves along and flips towards Delaunay; it keeps the mesh's topology, however near to each
+    other two sheets come. About 10 µs a point.
 
     Departures from the talk: points start in the middles of edges rather than at random, and repel neighbours in the
     triangulation rather than all within a radius.

@@ -7,6 +7,7 @@ steps do. What they leave wrong, points too near and edges too long, is taken ou
 import numpy as np
 
 from texloom.errors import ParameterError
+from texloom.points.corners import corners
 from texloom.points.crowding import crowded
 from texloom.points.ground import Ground
 from texloom.points.places import Places
@@ -28,10 +29,33 @@ _FULL = 0.75  # of the points that splitting all edges gives: with so many wante
 _ANCHORED = 32_000  # points: beyond, edges that are wrong are left; beyond that and two a vertex, so are bare parts
 
 
-def lay(ground: Ground, count: int, *, seed: int, kept: Places | None = None) -> Tiling:
-    """So many points on the mesh, spread evenly; those that are kept come first and stay."""
-    if kept is None and count >= 4 * _LEAST_START:
-        return refined(lay(ground, count // 4, seed=seed), count, seed=seed, frozen=False)
+def lay(ground: Ground, count: int, *, seed: int) -> Tiling:
+    """So many points on the mesh, spread evenly; those in corners of its boundary come first and stay."""
+    if count < 4 * _LEAST_START:
+        return _laid(ground, count, seed=seed, kept=corners(ground, count))
+    coarse = lay(ground, count // 4, seed=seed)
+    return _finer(coarse, count, seed=seed, frozen=coarse.frozen)
+
+
+def refined(tiling: Tiling, count: int, *, seed: int) -> Tiling:
+    """So many points, the given ones among them: first and in their places.
+
+    New points begin in the middles of edges. Where the coarse triangulation is too coarse to follow the mesh, and
+    points get stuck or leave parts of it bare, the new ones are chosen from the mesh again.
+    """
+    ground = tiling.ground
+    spacing = ground.spacing(count)
+    finer = _finer(tiling, count, seed=seed, frozen=tiling.count)
+    faults = bare, wrong = _faults(finer, spacing)
+    limit = _ANCHORED + (2 * len(ground.vertices) if bare else 0)
+    if bare + wrong == 0 or count > limit:
+        return finer
+    anchored = _laid(ground, count, seed=seed, kept=tiling.places)
+    return anchored if _faults(anchored, spacing) < faults else finer
+
+
+def _laid(ground: Ground, count: int, *, seed: int, kept: Places) -> Tiling:
+    """Points chosen from the mesh at once; those that are kept come first and stay."""
     spacing = ground.spacing(count)
     tiling = start(ground, _FINE * spacing, bend=_BEND * spacing, kept=kept)
     tiling.flip()
@@ -44,28 +68,17 @@ def lay(ground: Ground, count: int, *, seed: int, kept: Places | None = None) ->
     return tiling
 
 
-def refined(tiling: Tiling, count: int, *, seed: int, frozen: bool = True) -> Tiling:
-    """So many points, the given ones among them: first and in their places, if frozen.
-
-    New points begin in the middles of edges. Where the coarse triangulation is too coarse to follow the mesh, and
-    points get stuck or leave parts of it bare, the new ones are chosen from the mesh again.
-    """
-    ground = tiling.ground
-    spacing = ground.spacing(count)
-    kept = tiling.places if frozen else None
-    tiling = tiling.copy(bend=_BEND * spacing, frozen=tiling.count if frozen else 0)
+def _finer(tiling: Tiling, count: int, *, seed: int, frozen: int) -> Tiling:
+    """More points, the new ones from the middles of edges; the first ``frozen`` stay."""
+    spacing = tiling.ground.spacing(count)
+    tiling = tiling.copy(bend=_BEND * spacing, frozen=frozen)
     if count >= _FULL * (tiling.count + tiling.edge_count):
         tiling.quarter()
     _adjust(tiling, count, seed=seed)
     tiling.flip()
     tiling.spread(spacing, min(max(_ALL_STEPS // count, _FEWEST_STEPS), _STEPS))
     _even_out(tiling, spacing, seed=seed)
-    faults = bare, wrong = _faults(tiling, spacing)
-    limit = _ANCHORED + (2 * len(ground.vertices) if bare else 0)
-    if bare + wrong == 0 or count > limit or not frozen:
-        return tiling
-    anchored = lay(ground, count, seed=seed, kept=kept)
-    return anchored if _faults(anchored, spacing) < faults else tiling
+    return tiling
 
 
 def _adjust(tiling: Tiling, count: int, *, seed: int, careful: bool = False) -> None:

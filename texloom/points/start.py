@@ -11,26 +11,26 @@ from texloom.points.places import Places
 from texloom.points.tiling import Tiling, any_halfedge
 
 
-def start(ground: Ground, length: float, *, bend: float, kept: Places | None = None) -> Tiling:
+def start(ground: Ground, length: float, *, bend: float, kept: Places) -> Tiling:
     """The ground with edges no longer than ``length`` (times the scale); the points that are kept come first in it.
 
     Each of those takes the place of a corner of the face it lies in, so ``length`` should be less than they are apart.
     """
     refined = refine(ground.mesh, length * ground.scale)
     mesh, places = refined.mesh, _places(ground, refined)
-    faces, rim = mesh.faces.copy(), mesh.boundary_vertices.astype(np.int32)
-    frozen = 0
-    if kept is not None:
-        taken, frozen = _stand_ins(refined, kept, places.at), len(kept.face)
-        for ours, theirs in zip(places.arrays, kept.arrays, strict=True):
-            ours[taken] = theirs
-        rest = np.ones(len(rim), bool)
-        rest[taken] = False
-        order = np.concatenate([taken, np.flatnonzero(rest)])
-        number = np.empty(len(rim), np.int32)
-        number[order] = np.arange(len(rim), dtype=np.int32)
-        faces, places, rim = number[faces], places[order], rim[order]
-    return Tiling(ground, places, faces, mesh.twins.copy(), any_halfedge(faces, len(rim)), rim, bend, frozen)
+    rim = mesh.boundary_vertices.astype(np.int32)
+    taken = _stand_ins(refined, kept, places.at)
+    for ours, theirs in zip(places.arrays, kept.arrays, strict=True):
+        ours[taken] = theirs
+    rest = np.ones(len(rim), bool)
+    rest[taken] = False
+    order = np.concatenate([taken, np.flatnonzero(rest)])
+    number = np.empty(len(rim), np.int32)
+    number[order] = np.arange(len(rim), dtype=np.int32)
+    faces, frozen = number[mesh.faces], len(taken)
+    return Tiling(
+        ground, places[order], faces, mesh.twins.copy(), any_halfedge(faces, len(rim)), rim[order], bend, frozen
+    )
 
 
 def _places(ground: Ground, refined: Refined) -> Places:
