@@ -12,7 +12,7 @@ BIN := .venv/bin
 OUT ?= demo-output
 
 # Packages whose shapes are checked at run time in tests (never the kernels: their annotations are the compiler's).
-CHECKED := texloom.mesh,texloom.io,texloom.metrics,texloom.demo,texloom.sources,texloom.draws,texloom.points
+CHECKED := texloom.mesh,texloom.io,texloom.metrics,texloom.demo,texloom.sources,texloom.draws,texloom.points,texloom.sketch
 
 .PHONY: demo test lint types unit bench gallery format pin clean
 .DEFAULT_GOAL := demo

@@ -1,0 +1,58 @@
+"""The texture mesh: cells like a sketch's, over a texture of any size (Wang et al. 2014, §3.1)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from texloom.errors import ParameterError
+from texloom.sketch.disks import refined
+from texloom.sketch.graph import CellGraph
+from texloom.sketch.patch import Patch, seamless_patch
+from texloom.sketch.tiling import Tiling, on_plane, tile
+
+
+@dataclass(frozen=True, kw_only=True)
+class TextureMesh:
+    """How a sketch becomes a texture mesh, in three stages: patch, tiling, refinement.
+
+    Each can be run alone when what it depends on has changed: the patch on the sketch, the tiling on size, scale and
+    tileable, the refinement on radius, iterations and strength.
+    """
+
+    size: tuple[int, int]  # rows, columns
+    scale: float = 1.0  # texels of the texture in one of the sketch
+    tileable: bool = False
+    radius: float = 15.0  # texels; small for a regular mesh, large for a natural one (fig. 15)
+    iterations: int = 4
+    strength: float = 0.5  # w of eq. 7
+
+    def __post_init__(self) -> None:
+        if min(self.size) < 1:
+            raise ParameterError(f"a texture of {self.size[1]}×{self.size[0]} texels: both must be 1 or more")
+        if not self.scale > 0:
+            raise ParameterError(f"scale {self.scale:g}: it must be above 0")
+        if not self.radius >= 0 or self.iterations < 0:
+            raise ParameterError(f"radius {self.radius:g}, iterations {self.iterations}: neither may be below 0")
+        if not 0 <= self.strength <= 1:
+            raise ParameterError(f"strength {self.strength:g}: it must be between 0 and 1")
+
+    def run(self, sketch: CellGraph, seed: int) -> CellGraph:
+        """All stages at once."""
+        return self.refined(self.tiled(self.patch(sketch, seed)), seed)
+
+    def patch(self, sketch: CellGraph, seed: int) -> Patch:
+        """The seamless patch of a sketch."""
+        return seamless_patch(sketch, seed)
+
+    def tiled(self, patch: Patch) -> Tiling:
+        """The patch laid side by side, on a torus with room for the texture."""
+        return tile(patch, self.size, scale=self.scale, tileable=self.tileable)
+
+    def refined(self, tiling: Tiling, seed: int) -> CellGraph:
+        """The texture mesh: on a torus if it is to tile, else on a plane, with all of the cells that reach into it."""
+        graph = refined(tiling, seed, radius=self.radius, iterations=self.iterations, strength=self.strength)
+        if self.tileable:
+            return graph
+        moved = np.abs(graph.vertices - tiling.graph.vertices).max(initial=0)
+        widest = (tiling.patch.widest * tiling.scale).max() + 2 * moved
+        return on_plane(graph, self.size, float(widest))

@@ -1,0 +1,227 @@
+"""Triangles between the lines of a graph on a torus: while none of them is turned over, nothing crosses."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Float64, Int, Int32
+
+from texloom import draws
+from texloom.sketch.bezier import bend, points_at
+from texloom.sketch.chains import Chains, chains, head_period
+from texloom.sketch.crossing import cross
+from texloom.sketch.graph import CellGraph
+
+_FLAT = 0.1  # texels from a chord to its curve
+_MARGIN = 0.4  # of the torus: how far beyond its border copies lie, or twice, or twice again
+_FARTHEST = 1000  # copies, from one end of a chord or side to the other, at most
+_SPLITS = 16  # rounds in which chords become sides of triangles: six are many
+_APART = 1e-4  # texels that points are set apart, for four on one circle would be joined in two ways
+_THIN = 1e-6  # square texels under which a triangle says nothing
+
+
+@dataclass(frozen=True, eq=False)
+class Web:
+    """A graph on a torus and a triangulation of all its chords, each point of which the ends of its curve carry along.
+
+    A corner of a triangle is moved by (1 - share) times its first carrier's displacement plus share times the second's.
+    A map of the torus that is linear on triangles and turns none over is one to one: then no edges cross, and no
+    cell has flipped.
+    """
+
+    graph: CellGraph
+    chains: Chains
+    loose: Bool[np.ndarray, "vertex"]  # the ends of curves that may be displaced
+    corner: Float64[np.ndarray, "triangle 3 2"]  # places in one piece, perhaps beyond the border
+    carrier: Int32[np.ndarray, "triangle 3 2"]  # vertices
+    period: Int32[np.ndarray, "triangle 3 2 2"]  # the copy of each carrier
+    share: Float64[np.ndarray, "triangle 3"]
+
+
+@dataclass(frozen=True, eq=False)
+class _Points:
+    """Points on edges, vertices first, and the chords between them."""
+
+    edge: Int[np.ndarray, "point"]
+    on_edge: Float[np.ndarray, "point"]
+    tail: Int[np.ndarray, "chord"]  # points
+    head: Int[np.ndarray, "chord"]
+    along: Int[np.ndarray, "chord"]  # edges
+    first: Float[np.ndarray, "chord"]  # parameters
+    last: Float[np.ndarray, "chord"]
+
+
+def web(graph: CellGraph) -> Web:
+    """The triangles of a graph that does not cross itself: Delaunay, chords split until each is a side of two.
+
+    Where that does not end, as between curves that touch where they part, the curves' ends are to stay.
+    """
+    size = np.array(graph.size)
+    points, splits = _on_edges(graph), 0
+    while True:
+        place = points_at(graph.curves[points.edge], points.on_edge)
+        triangle, period = _triangles(place, size)
+        missing = _missing(graph, points, place, triangle, period)
+        if not len(missing) or splits == _SPLITS:
+            break
+        points, splits = _split(graph, points, missing), splits + 1
+
+    runs = chains(graph)
+    loose = runs.free.copy()
+    loose[runs.ends[points.along[missing]]] = False
+    flat = (place[triangle] + period * size, points.edge[triangle], points.on_edge[triangle], period)
+    corner, edge, t, period = map(np.concatenate, zip(flat, _wedges(graph), strict=True))
+    wide = cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) > _THIN
+    corner, edge, t, period = corner[wide], edge[wide], t[wide], period[wide]
+    share = runs.share[edge, 0] * (1 - t) + runs.share[edge, 1] * t
+    copies = (period[:, :, None] + runs.period[edge]).astype(np.int32)
+    return Web(graph, runs, loose, corner, runs.ends[edge], copies, share)
+
+
+def _wedges(graph: CellGraph) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Triangles from a vertex to the control points of curves at a sharp angle there, that their order may last.
+
+    Their corners, and of each the edge, the parameter at which the edge's ends carry it, and the copy of its tail.
+    """
+    halfedge = np.arange(2 * len(graph.edges))
+    edge, back = halfedge // 2, halfedge % 2
+    origin = graph.edges.ravel()
+    way = np.where(back[:, None] == 0, graph.curve[edge, 0], graph.curve[edge, 1] - graph.curve[edge, 2])
+    order = np.lexsort((np.arctan2(way[:, 1], way[:, 0]), origin))
+    following = np.roll(order, -1)
+    closes = np.flatnonzero(np.diff(origin[order], append=-1))
+    following[closes] = order[np.concatenate([[0], closes[:-1] + 1])]
+    sharp = (way[order] * way[following]).sum(axis=1) > 0
+    curved = (bend(graph.curves) > _FLAT)[edge]
+    one, two = (half[sharp & (curved[order] | curved[following])] for half in (order, following))
+    at = graph.vertices[origin[one]]
+    t = np.where(back == 0, 1 / 3, 2 / 3)
+    copy = -back[:, None] * head_period(graph)[edge]
+    return (
+        np.stack([at, at + way[one], at + way[two]], axis=1),
+        edge[np.stack([one, one, two], axis=1)],
+        np.stack([back[one].astype(np.float64), t[one], t[two]], axis=1),
+        np.stack([copy[one], copy[one], copy[two]], axis=1),
+    )
+
+
+def _on_edges(graph: CellGraph) -> _Points:
+    """The ends of all chords of a graph."""
+    chords = graph._chords(_FLAT)
+    edge = chords.edge.astype(np.int64)
+    opens, closes = chords.first == 0, chords.last == 1
+    count = len(graph.vertices)
+    of_vertex, at = np.zeros(count, np.int64), np.zeros(count)
+    of_vertex[graph.edges.T] = np.arange(len(graph.edges))
+    at[graph.edges[:, 1]] = 1
+    at[graph.edges[of_vertex, 0] == np.arange(count)] = 0
+    inner = np.flatnonzero(~opens)
+    name = count + np.cumsum(~opens) - 1  # of the chord's start, where it is no vertex
+    tail = np.where(opens, graph.edges[edge, 0], name)
+    head = np.where(closes, graph.edges[edge, 1], name + 1)
+    return _Points(
+        np.concatenate([of_vertex, edge[inner]]),
+        np.concatenate([at, chords.first[inner]]),
+        tail,
+        head,
+        edge,
+        chords.first,
+        chords.last,
+    )
+
+
+def _triangles(
+    place: Float[np.ndarray, "point 2"], size: Float[np.ndarray, "2"]
+) -> tuple[Int[np.ndarray, "triangle 3"], Int[np.ndarray, "triangle 3 2"]]:
+    """The Delaunay triangles of points on a torus, in one turning sense, and the copy of each corner."""
+    from scipy.spatial import Delaunay
+
+    index = np.arange(len(place))
+    noise = np.stack([draws.uniform(0, axis, index=index) for axis in (0, 1)], axis=1)
+    home = -np.floor((place + 0.5) / size).astype(np.int64)
+    margin = _MARGIN * size.min()
+    while True:
+        copy, point = _copies(place + home * size, size, margin)
+        at = (place + home * size + _APART * noise)[point] + copy * size
+        corner = Delaunay(at).simplices
+        turned = cross(at[corner[:, 1]] - at[corner[:, 0]], at[corner[:, 2]] - at[corner[:, 0]]) < 0
+        corner[turned] = corner[turned][:, [0, 2, 1]]
+
+        # Of all copies of a triangle the one whose lowest corner is at home, copies of one point in their order
+        lowest = (point * len(copy) + np.arange(len(copy)))[corner].argmin(axis=1)
+        corner = corner[np.arange(len(corner))[:, None], (lowest[:, None] + [0, 1, 2]) % 3]
+        corner = corner[(copy[corner[:, 0]] == 0).all(axis=1)]
+        if _reach(at[corner]) <= margin:
+            return point[corner], (copy + home[point])[corner]
+        margin *= 2
+
+
+def _copies(
+    base: Float[np.ndarray, "point 2"], size: Float[np.ndarray, "2"], margin: float
+) -> tuple[Int[np.ndarray, "copy 2"], Int[np.ndarray, "copy"]]:
+    """The copies of points that lie on a torus or within a margin of it, and whose they are."""
+    most = np.ceil(margin / size).astype(np.int64)
+    spans = 2 * most + 1
+    steps = np.stack(np.divmod(np.arange(spans.prod()), spans[1]), axis=1) - most
+    copies = base + steps[:, None] * size
+    step, point = np.nonzero(((copies >= -0.5 - margin) & (copies < size - 0.5 + margin)).all(axis=2))
+    return steps[step], point
+
+
+def _reach(corner: Float[np.ndarray, "triangle 3 2"]) -> float:
+    """The largest diameter of the circles through the corners of triangles."""
+    a, b, c = (corner[:, (k + 1) % 3] - corner[:, k] for k in range(3))
+    sides = np.hypot(*a.T) * np.hypot(*b.T) * np.hypot(*c.T)
+    return float((sides / np.maximum(np.abs(cross(a, b)), 1e-12)).max())
+
+
+def _missing(
+    graph: CellGraph,
+    points: _Points,
+    place: Float[np.ndarray, "point 2"],
+    triangle: Int[np.ndarray, "triangle 3"],
+    period: Int[np.ndarray, "triangle 3 2"],
+) -> Int[np.ndarray, "missing"]:
+    """The chords that are not a side of any triangle."""
+    size = np.array(graph.size)
+    start, end = (points_at(graph.curves[points.along], t) for t in (points.first, points.last))
+    copy = np.rint((end - place[points.head] - start + place[points.tail]) / size).astype(np.int64)
+    wanted = _keys(points.tail, points.head, copy, len(place))
+    following = [1, 2, 0]
+    turn = (period[:, following] - period).reshape(-1, 2)
+    there = _keys(triangle.ravel(), triangle[:, following].ravel(), turn, len(place))
+    return np.flatnonzero(~np.isin(wanted, there))
+
+
+def _keys(tail: np.ndarray, head: np.ndarray, copy: np.ndarray, count: int) -> Int[np.ndarray, "n"]:
+    """One number for a side of a triangle, whichever way it is run."""
+    back = (tail > head) | ((tail == head) & ((copy[:, 0] < 0) | ((copy[:, 0] == 0) & (copy[:, 1] < 0))))
+    low, high = np.where(back, head, tail), np.where(back, tail, head)
+    step = np.where(back[:, None], -copy, copy) + _FARTHEST
+    wide = 2 * _FARTHEST + 1
+    return ((low * count + high) * wide + step[:, 0]) * wide + step[:, 1]
+
+
+def _split(graph: CellGraph, points: _Points, chord: Int[np.ndarray, "split"]) -> _Points:
+    """Chords in two: near the middle, at a power of two texels from an end that is a vertex, so that those of two
+
+    edges at a sharp angle come to lie at the same distance, and are no longer in each other's way.
+    """
+    curves = graph.curves[points.along[chord]]
+    first, last = points.first[chord], points.last[chord]
+    length = np.hypot(*(points_at(curves, last) - points_at(curves, first)).T)
+    power = 2 ** np.rint(np.log2(length / 2)) / length
+    share = np.where(first == 0, power, np.where(last == 1, 1 - power, 0.5))
+    share = np.where((first == 0) & (last == 1), 0.5, share)
+    middle = first + (last - first) * share
+    new = len(points.edge) + np.arange(len(chord))
+    head, ends = points.head.copy(), points.last.copy()
+    head[chord], ends[chord] = new, middle
+    return _Points(
+        np.concatenate([points.edge, points.along[chord]]),
+        np.concatenate([points.on_edge, middle]),
+        np.concatenate([points.tail, new]),
+        np.concatenate([head, points.head[chord]]),
+        np.concatenate([points.along, points.along[chord]]),
+        np.concatenate([points.first, middle]),
+        np.concatenate([ends, last]),
+    )
