@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Int32, UInt8
+from jaxtyping import Float32, Int32, UInt8
 
 from texloom.arrays import Image, fours
 from texloom.domain.neighbourhoods import Neighbourhoods, Stencils
@@ -26,28 +26,27 @@ class Guide:
     """Where sources come from: continuations of what the neighbours show, texels alike, and a tree of all windows."""
 
     image: Image  # channels in fours
-    usable: UInt8[np.ndarray, "row column"]  # 1 where a neighbourhood may be centred
+    usable: UInt8[np.ndarray, "row column"]  # the kind of site a neighbourhood centred there may serve; 0: none
     similar: Int32[np.ndarray, "row column k 2"]
     suggesting: int = 1  # of the near sites, the middle one first, those whose alike texels are tried
     tree: WindowTree | None = None
     nearest: int = 1  # windows that the tree is asked for
     candidates: int = _CANDIDATES
+    axis: Float32[np.ndarray, "row column"] | None = None  # the angle of each texel's own axes; None: all 0
 
     @property
     def as_exemplar(self) -> dict[str, object]:
         """For the kernels."""
-        return {
-            "image": fours(self.image),
-            "usable": self.usable,
-            "similar": self.similar,
-            "suggesting": self.suggesting,
-        }
+        told: dict[str, object] = {"image": fours(self.image), "usable": self.usable}
+        if self.axis is not None:
+            told["axis"] = self.axis
+        return told | {"similar": self.similar, "suggesting": self.suggesting}
 
 
 class Visits:
     """Neighbourhoods on a canvas, and when each was visited last: none is in vain while nothing changed around it.
 
-    ``samples`` of the stencils are compared (None: all).
+    ``samples`` of the stencils are compared (None: all); ``kind`` is that of every site (None: all are 1).
     """
 
     def __init__(
@@ -57,9 +56,10 @@ class Visits:
         around: Neighbourhoods,
         stencils: Stencils,
         samples: Int32[np.ndarray, "sample"] | None = None,
+        kind: UInt8[np.ndarray, "site"] | None = None,
     ) -> None:
         everything = np.arange(stencils.sites.shape[1], dtype=np.int32)
-        self.guide, self.canvas = guide, canvas
+        self.guide, self.canvas, self._kind = guide, canvas, kind
         self.cost = np.zeros(len(around.sites), np.float32)  # mean squared difference at the last visit
         self._samples = everything if samples is None else samples
         self._around = {
@@ -87,10 +87,7 @@ class Visits:
         launch(
             find_sources,
             len(chosen),
-            inputs=[
-                *(chosen, self._around, self._canvas, self._visited, self.guide.as_exemplar),
-                *(self._tree, desk),
-            ],
+            inputs=[chosen, self._around, self._canvas, self._visited, self.guide.as_exemplar, self._tree, desk],
             outputs=[self.cost],
             grain=1024,
         )
@@ -108,17 +105,14 @@ class Visits:
         launch(
             visit_in_order,
             1,
-            inputs=[
-                *(chosen, self._now, self._around, self.guide.as_exemplar),
-                *(self._tree, self._desk(1)),
-            ],
+            inputs=[chosen, self._now, self._around, self.guide.as_exemplar, self._tree, self._desk(1)],
             outputs=[self._visited, self._canvas, self.cost],
         )
 
     @cached_property
     def _canvas(self) -> dict[str, np.ndarray]:
-        canvas = self.canvas
-        return {
+        canvas, kind = self.canvas, {} if self._kind is None else {"kind": self._kind}
+        return kind | {
             "position": canvas.position,
             "turn": canvas.turn,
             "colour": fours(canvas.colour),
