@@ -54,6 +54,48 @@ def globe(splits: int = 48) -> Mesh:
     return polygonise(ball((0, 0, 0), 1.0), low=np.full(3, -1.2), high=np.full(3, 1.2), step=step)
 
 
+def ray(step: float = 0.035) -> Mesh:
+    """A stingray: a thin disc with wings and a whip of a tail, genus 0."""
+    disc = ball((0, 0, 0), (0.62, 0.17, 0.72))
+    wing = mirrored(ball((0.62, 0.03, 0.05), (0.62, 0.1, 0.42), roll=0.12))
+    back = ball((0, 0.07, 0.1), (0.3, 0.2, 0.6))
+    tail = union(
+        [limb((0, 0, -0.6), (0, 0.02, -1.1), 0.09, 0.05), limb((0, 0.02, -1.1), (0.2, 0.1, -1.8), 0.05, 0.035)],
+        blend=0.05,
+    )
+    eye = mirrored(ball((0.17, 0.2, 0.42), 0.07))
+    whole = union([disc, wing, back, tail, eye], blend=0.12)
+    return polygonise(whole, low=np.array([-1.35, -0.4, -2.0]), high=np.array([1.35, 0.5, 1.0]), step=step)
+
+
+def elephant(step: float = 0.05) -> Mesh:
+    """An elephant with its trunk hanging: genus 0."""
+    body = ball((0, 1.0, -0.3), (0.56, 0.58, 0.82))
+    legs = [mirrored(limb((0.36, 0.75, z), (0.38, 0.1, z), 0.21, 0.2)) for z in (-0.72, 0.22)]
+    head = ball((0, 1.38, 0.62), (0.4, 0.44, 0.42))
+    places = [(0, 1.25, 0.95), (0, 0.95, 1.22), (0, 0.55, 1.3), (0, 0.25, 1.45)]
+    radii = [0.24, 0.17, 0.13, 0.1]
+    trunk = [
+        limb(a, b, *pair) for a, b, pair in zip(places, places[1:], zip(radii, radii[1:], strict=False), strict=False)
+    ]
+    ear = mirrored(ball((0.56, 1.36, 0.42), (0.34, 0.42, 0.15), roll=-0.2))
+    tail = limb((0, 1.15, -1.1), (0, 0.62, -1.32), 0.09, 0.07)
+    whole = union([body, *legs, head, *trunk, ear, tail], blend=0.13)
+    return polygonise(whole, low=np.array([-1.15, -0.25, -1.6]), high=np.array([1.15, 2.1, 1.8]), step=step)
+
+
+def linked(around: int = 160, across: int = 52) -> Mesh:
+    """Two rings through each other, which never touch: two parts, genus 1 each."""
+    t, angle = _circle(around)[:, None], _circle(across)
+    reach = 1 + 0.36 * np.cos(angle)
+    lying = np.stack(np.broadcast_arrays(reach * np.cos(t), 0.36 * np.sin(angle), reach * np.sin(t)), axis=-1).reshape(
+        -1, 3
+    )
+    standing = lying[:, [0, 2, 1]] * [1, 1, -1] + [1.0, 0, 0]
+    faces = _lattice(around, across, closed=True)
+    return Mesh(np.concatenate([lying, standing]), np.concatenate([faces, faces + len(lying)])[:, ::-1])
+
+
 def _ring(middle: tuple[float, float, float]) -> Shape:
     def distance(p: Points) -> Distance:
         away = p - np.asarray(middle)

@@ -177,7 +177,9 @@ def correct_site(
     step, value, known = (part[samples[2] > 0] for part in samples)
     costs = []
     for place, angle in tried:
-        squares = [((bilinear(image, *(place + turned(s, angle))) - v) ** 2).sum() for s, v in zip(step, value)]
+        squares = [
+            ((bilinear(image, *(place + turned(s, angle))) - v) ** 2).sum() for s, v in zip(step, value, strict=True)
+        ]
         costs.append(float(np.sum(squares) / max(len(known), 1)))
     best = int(np.argmin(costs))
     return *tried[best], costs[best]

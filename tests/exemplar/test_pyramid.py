@@ -6,7 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from texloom.errors import ParameterError
-from texloom.exemplar.pyramid import gaussian_pyramid, halve
+from texloom.exemplar.exemplar import Exemplar, from_array
+from texloom.exemplar.join import join
+from texloom.exemplar.pyramid import gaussian_pyramid, halve, stack_pyramid
 
 RNG = np.random.default_rng(1)
 
@@ -55,3 +57,36 @@ def test_levels_are_counted():
     assert sizes == [(33, 18), (17, 9), (9, 5), (5, 3)]
     with pytest.raises(ParameterError, match="not 0"):
         gaussian_pyramid(np.zeros((8, 8, 1), np.float32), 0)
+
+
+def test_a_stack_is_halved_map_by_map_with_its_mask_and_parts():
+    samples = [
+        Exemplar(from_array(RNG.random((rows, columns, 3), np.float32)).maps | height(rows, columns))
+        for rows, columns in ((33, 18), (21, 40))
+    ]
+    joined = join(samples)
+    whole = joined.exemplar
+    stacks = stack_pyramid(whole, 3)
+    assert stacks[0] is whole and len(stacks) == 3
+    for level, stack in enumerate(stacks):
+        assert list(stack.maps) == ["basecolor", "height"] and stack.maps["height"].kind == "data"
+        for name, m in stack.maps.items():
+            expected = gaussian_pyramid(whole.maps[name].image, 3, usable=whole.mask)[level]
+            np.testing.assert_array_equal(m.image, expected.image)
+            assert stack.mask is not None and expected.usable is not None
+            np.testing.assert_array_equal(stack.mask, expected.usable)
+        inside = np.zeros(stack.shape, int)
+        for part, sample in zip(stack.parts, samples, strict=True):
+            assert (part.rows, part.columns) == tuple(-(-length >> level) for length in sample.shape)
+            inside[part.slices] += 1
+        np.testing.assert_array_equal(inside == 1, stack.mask)  # nothing but the gap is masked here
+        np.testing.assert_array_equal(inside <= 1, True)
+
+
+def height(rows, columns):
+    return from_array(RNG.random((rows, columns, 1), np.float32), name="height").maps
+
+
+def test_a_stack_without_a_mask_has_none():
+    stacks = stack_pyramid(from_array(RNG.random((17, 20, 3), np.float32)), 2)
+    assert stacks[1].mask is None and stacks[1].parts == () and stacks[1].shape == (9, 10)

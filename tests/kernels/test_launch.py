@@ -1,6 +1,7 @@
-"""Launches: the same result on any number of threads, and a kernel launched again and again."""
+"""Launches: the same result on any number of threads, arrays in structs, and a kernel launched again and again."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +20,23 @@ def deal(
     for i in range(first + item, source.shape[0], step):
         total[item] = total[item] + source[i][0] - source[i][1]
         seen[item] = seen[item] + 1
+
+
+@wp.struct
+class Ledger:
+    """Arrays and a number of different kinds."""
+
+    value: wp.array(dtype=wp.vec2)
+    of: wp.array2d(dtype=int)
+    share: float
+
+
+@wp.kernel(enable_backward=False)
+def book(start: int, given: Ledger, kept: Ledger):
+    """kept.value[item] = given.share · given.value[given.of[item, 1]] - kept.share; kept.of[item] counts up."""
+    item = start + wp.tid()
+    kept.value[item] = given.share * given.value[given.of[item, 1]] - wp.vec2(kept.share, kept.share)
+    kept.of[item, 0] = kept.of[item, 0] + 1
 
 
 @pytest.fixture(params=[1, 2, 3])
@@ -65,6 +83,39 @@ def test_chunks_make_no_difference(threads):
     launch(deal, 1000, inputs=[0, 1000, source.astype(np.float32)], outputs=[total, seen], grain=7)
     assert (total == 2).all() and (seen == 1).all()
     assert parallel_map(lambda i: i * i, 5) == [0, 1, 4, 9, 16]
+
+
+def ledgers(count: int) -> tuple[dict[str, Any], dict[str, Any]]:
+    """One to read, one to write; fields in another order than the struct's."""
+    rng = np.random.default_rng(1)
+    of = rng.integers(0, count, (count, 2)).astype(np.int32)
+    value = rng.random((count, 2), np.float32)
+    given = {"share": 3.0, "of": of, "value": value}
+    return given, {"value": np.zeros_like(value), "share": 0.5, "of": np.zeros_like(of)}
+
+
+def test_structs_are_dicts_of_their_fields_read_and_written_in_place(threads):
+    given, kept = ledgers(500)
+    read = {name: np.copy(part) for name, part in given.items()}
+    for _ in range(2):
+        launch(book, 500, inputs=[given], outputs=[kept], grain=7)
+    np.testing.assert_allclose(kept["value"], 3 * read["value"][read["of"][:, 1]] - 0.5, rtol=1e-6)
+    assert (kept["of"] == [2, 0]).all()
+    for name, part in given.items():
+        np.testing.assert_array_equal(part, read[name])
+
+
+def test_arrays_in_structs_must_lie_as_kernels_read_them():
+    given, kept = ledgers(8)
+    given["of"] = np.asfortranarray(given["of"])
+    with pytest.raises(AssertionError, match="given.of: kernels take C-contiguous arrays"):
+        launch(book, 8, inputs=[given], outputs=[kept])
+
+
+def test_a_field_that_the_struct_has_not_is_refused():
+    given, kept = ledgers(8)
+    with pytest.raises(KeyError, match="total"):
+        launch(book, 8, inputs=[given | {"total": 1.0}], outputs=[kept])
 
 
 def test_what_an_item_raises_is_raised_here(threads):

@@ -11,7 +11,7 @@ from texloom.field.direction import from_vectors
 from texloom.kernels.launch import launch
 from texloom.kernels.neighbourhoods import find_beside
 from texloom.mesh.mesh import Mesh
-from texloom.points.hierarchy import Level, hierarchy
+from texloom.points.hierarchy import Hierarchy, Level, hierarchy
 from texloom.progress import Report, silent
 
 _DENSITY = 2 / np.sqrt(3)  # points a square texel, in a triangular lattice one texel apart
@@ -22,8 +22,8 @@ _FEWEST = 64  # points of the coarsest level
 class Beside:
     """For each of ``n`` places the site of a domain nearest to it, and how it lies from that.
 
-    ``offset`` is [row, column] texels of that domain in the site's frame; ``turn`` the angle by which the place's own
-    frame is turned against the site's, as the field counts: a multiple of 2π/order.
+    ``offset`` is [row, column] texels of that domain in the site's frame; ``turn`` the angle by which the site's
+    frame is turned against the place's, as the field counts: a multiple of 2π/order.
     """
 
     site: Int32[np.ndarray, "n"]
@@ -44,15 +44,16 @@ class Levels:
 
 
 def lay_levels(surface: Surface, count: int, *, seed: int = 0, report: Report = silent) -> Levels:
-    """``count`` levels or, on a small surface, as many as have 64 points each. About 15 µs a site.
+    """``count`` levels or, on a surface that is small or has many parts, as many as have room. About 15 µs a site.
 
-    Raises: ParameterError, unless ``count`` is 1 or more, or if the mesh has too many parts for so few points.
+    Raises: ParameterError, unless ``count`` is 1 or more, or if even the finest has no room.
     """
     if count < 1:
         raise ParameterError(f"{count} levels: give 1 or more")
     finest = max(round(_DENSITY * float(surface.area.sum(dtype=np.float64))), _FEWEST)
     counts = [finest // 4**level for level in reversed(range(count)) if level == 0 or finest // 4**level >= _FEWEST]
-    points = hierarchy(surface.refined.mesh, counts, scale=surface.scale.astype(np.float64), seed=seed, report=report)
+    points = _points(surface, counts, seed=seed, report=report)
+    counts = counts[-len(points.levels) :]
     laid = [_Laid.of(surface, level, 2.0 ** (len(counts) - 1 - number)) for number, level in enumerate(points.levels)]
     onto = [
         _beside(coarse.domain, fine.domain, coarse.site[_nearest_corner(coarser, level)][fine.point])
@@ -60,6 +61,17 @@ def lay_levels(surface: Surface, count: int, *, seed: int = 0, report: Report = 
     ]
     home = _beside(laid[-1].domain, surface, laid[-1].site[_near_points(surface, points.levels[-1])])
     return Levels(tuple(each.domain for each in laid), (*onto, home))
+
+
+def _points(surface: Surface, counts: list[int], *, seed: int, report: Report) -> Hierarchy:
+    """Levels of so many points, without the coarsest where the mesh has too many parts, holes and handles for them."""
+    try:
+        scale = surface.scale.astype(np.float64)
+        return hierarchy(surface.refined.mesh, counts, scale=scale, seed=seed, report=report)
+    except ParameterError:
+        if len(counts) == 1:
+            raise
+        return _points(surface, counts[1:], seed=seed, report=report)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +95,6 @@ class _Laid:
         power = np.einsum("pc,pc->p", place, field.power[face])
         axes, angle = mesh.face_frames[face], np.angle(power) / field.order
         along = np.cos(angle)[:, None] * axes[:, 0] + np.sin(angle)[:, None] * axes[:, 1]
-        along[power == 0] = 0
         ours = from_vectors(own, field.order, along)
         scale = level.scale[point]
         return _Laid(Surface.build(own, ours, texel=surface.texel * texels, scale=scale, spacing=np.inf), point, site)

@@ -64,14 +64,29 @@ def lay_patches(
     )
 
 
-def lay_stencils(flow: Flow, sites: Int32[np.ndarray, "n"], width: int) -> Stencils:
-    """Squares of ``width × width`` samples traced from sites: so few texels that one path to each is enough."""
-    origins, shape = starts(flow), (len(sites), width * width, 3)
+def lay_stencils(
+    flow: Flow, sites: Int32[np.ndarray, "n"], width: int, *, axis: Complex64[np.ndarray, "face 3"]
+) -> Stencils:
+    """Squares of ``width × width`` samples traced from sites: so few texels that one path to each is enough.
+
+    ``axis`` is the site's frame at every face corner, as a direction in the face.
+    """
+    origins, shape = _aligned(flow, starts(flow), axis), (len(sites), width * width, 3)
     laid = Stencils(np.empty(shape, np.int32), np.empty(shape, np.float32), _steps(width))
     begin = [part[sites] for part in (origins.face, origins.place, origins.heading)]
     inputs = [flow.record, flow.twin, flow.faces, flow.order, width, *begin]
     launch(trace_stencils, len(sites), inputs=inputs, outputs=[laid.sites, laid.weights])
     return laid
+
+
+def _aligned(flow: Flow, origins: Samples, axis: Complex64[np.ndarray, "face 3"]) -> Samples:
+    """Of the directions of a symmetric field each sample follows the one that is its site's."""
+    wanted = axis[origins.face, origins.place.argmax(axis=1)]
+    heading = origins.heading[:, 0] + 1j * origins.heading[:, 1]
+    branch = 2 * np.pi / flow.order
+    heading = heading * np.exp(1j * branch * np.rint(np.angle(wanted * heading.conj()) / branch))
+    origins.heading[:] = np.stack([heading.real, heading.imag], axis=1)
+    return origins
 
 
 def _steps(width: int) -> Float32[np.ndarray, "1 sample 2"]:

@@ -120,7 +120,7 @@ class Surface:
 
     def stencils(self, width: int) -> Stencils:
         """``width × width`` samples around every site, by steps of a texel along the field and its orthogonal."""
-        return lay_stencils(self.flow, np.arange(self.count, dtype=np.int32), width)
+        return lay_stencils(self.flow, np.arange(self.count, dtype=np.int32), width, axis=self.axis)
 
     @cached_property
     def _frames(self) -> tuple[Float32[np.ndarray, "site 3"], ...]:

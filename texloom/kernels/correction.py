@@ -96,9 +96,12 @@ def find_source(own: int, i: int, around: Around, canvas: Canvas, exemplar: Exem
         ask_tree(tree, desk, i)
         for k in range(desk.nearest.shape[1]):
             window = desk.nearest[i, k]
+            row = float(0.0)
+            column = float(0.0)
             if window >= 0:
                 row = float(tree.centre[window, 0])
                 column = float(tree.centre[window, 1])
+            if window >= 0 and is_usable(exemplar.usable, row, column, kind):
                 total = mismatch(exemplar, row, column, 0.0, around, shape, desk, i, best)
                 if total < best:
                     best = total
@@ -131,7 +134,7 @@ def find_sources(
     visited: wp.array(dtype=int),  # when each neighbourhood last was
     exemplar: Exemplar,
     tree: Tree,
-    desk: Desk,  # row i for chosen[i]
+    desk: Desk,  # written too: row i for chosen[i]
     cost: wp.array(dtype=float),  # of each neighbourhood, at its last visit
 ):
     """What every chosen site is to show, from what all show now."""

@@ -24,7 +24,7 @@ def colour_greedily(
     ring: wp.array(dtype=int),  # neighbours of each site, in compressed rows
     colour: wp.array(dtype=int),
 ):
-    """Every site takes the lowest of 64 colours that no neighbour before it took. A sequence, so one item."""
+    """Every site takes the lowest of 64 colours that no neighbour before it took; beyond, the last. One item."""
     for site in range(colour.shape[0]):
         taken = wp.uint64(0)
         for e in range(ring_start[site], ring_start[site + 1]):

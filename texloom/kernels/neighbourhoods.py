@@ -103,6 +103,8 @@ def find_beside(
     i = start + wp.tid()
     own = int(near[i])
     least = float(wp.length_sq(place[own] - at[i]))
+    if wp.dot(normal[own], facing[i]) <= 0.0:
+        least = float(1.0e30)  # the walk may begin at one, not end there
     for _ in range(MOST_STEPS):
         nearer = int(own)
         for e in range(ring_start[own], ring_start[own + 1]):

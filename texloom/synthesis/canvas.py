@@ -61,23 +61,46 @@ class Canvas:
         self.colour[bare] = image[texel[:, 0], texel[:, 1]]
         self.label[bare] = self.next_label  # a patch of its own, so that correction visits its border
 
-    def continued(self, beside: Beside, image: Image, scale: float) -> "Canvas":
-        """What this canvas shows, continued to the places beside its sites, in an image ``scale`` times as large."""
+    def continued(
+        self, beside: Beside, image: Image, scale: float, usable: Bool[np.ndarray, "row column"] | None = None
+    ) -> "Canvas":
+        """What this canvas shows, continued to the places beside its sites, in an image ``scale`` times as large.
+
+        Nothing leaves the image, or what of it is ``usable`` (None: all).
+        """
         turn = self.turn[beside.site]
         row, column = beside.offset.T
         cosine, sine = np.cos(turn), np.sin(turn)
         way = np.stack([cosine * row + sine * column, cosine * column - sine * row], axis=1)
         canvas = Canvas.empty(len(turn), image.shape[2])
-        canvas.position[:] = np.float32(scale) * (self.position[beside.site] + way)
+        canvas.position[:] = _readable(np.float32(scale) * (self.position[beside.site] + way), image.shape[:2], usable)
         canvas.turn[:] = turn + beside.turn
         canvas.label[:] = self.label[beside.site]
         canvas.colour[:] = _between(image, canvas.position)
         return canvas
 
+    def look(self, image: Image, sites: Int32[np.ndarray, "n"]) -> None:
+        """Give sites the colours of the places that they show."""
+        self.colour[sites] = _between(image, self.position[sites])
+
     def sources(self) -> SourceMap:
         """One source a site."""
         turn = self.turn[:, None] if self.turn.any() else None
         return SourceMap(self.position[:, None], np.ones((len(self.position), 1), np.float32), turn)
+
+
+def _readable(
+    position: Float32[np.ndarray, "n 2"], shape: tuple[int, int], usable: Bool[np.ndarray, "row column"] | None
+) -> Float32[np.ndarray, "n 2"]:
+    """The same places, inside the image; those that would read a texel not ``usable`` move to the nearest that is."""
+    position = np.clip(position, 0, np.array(shape, np.float32) - 1)
+    if usable is None:
+        return position
+    low, high = np.floor(position).astype(np.int32), np.ceil(position).astype(np.int32)
+    corners = [usable[row[:, 0], column[:, 1]] for row in (low, high) for column in (low, high)]
+    wrong = ~np.logical_and.reduce(corners)
+    position[wrong] = nearest_usable(np.rint(position[wrong]).astype(np.int32), usable)
+    return position
 
 
 def _between(image: Image, position: Float32[np.ndarray, "n 2"]) -> Float32[np.ndarray, "n channel"]:

@@ -76,7 +76,13 @@ def usable_centres(image: Image, exemplar: Exemplar, reach: int) -> UInt8[np.nda
     width = 2 * reach + 1
     usable = np.zeros(image.shape[:2], np.uint8)
     if min(image.shape[:2]) > width:
-        inner = BlockSearch(image, width + 1, readable(exemplar.mask)).usable
+        seen = readable(exemplar.mask)
+        if exemplar.parts and seen is not None:  # on coarse levels the gap between samples is as narrow as a scratch
+            inside = np.zeros(image.shape[:2], bool)
+            for part in exemplar.parts:
+                inside[part.slices] = True
+            seen &= inside
+        inner = BlockSearch(image, width + 1, seen).usable
         usable[reach : reach + inner.shape[0], reach : reach + inner.shape[1]] = inner
     return usable if exemplar.mask is None else usable * exemplar.mask
 

@@ -16,8 +16,9 @@ from texloom.domain.neighbourhoods import Stencils
 from texloom.domain.order import colour_parts, sweep_order
 from texloom.domain.surface import Surface
 from texloom.errors import ExemplarError, ParameterError
-from texloom.exemplar.exemplar import Exemplar
+from texloom.exemplar.exemplar import LEAST_SIDE, Exemplar
 from texloom.exemplar.features import match_image
+from texloom.exemplar.patches import whole_squares
 from texloom.exemplar.pyramid import gaussian_pyramid, stack_pyramid
 from texloom.exemplar.similarity import most_alike
 from texloom.progress import Report
@@ -118,24 +119,27 @@ class _Run:
                 canvas = self._begin(surface, stack, level.image)
                 clock.lap("start")
             else:
-                canvas = canvas.continued(levels.onto[number - 1], level.image, 2.0)
+                canvas = canvas.continued(levels.onto[number - 1], level.image, 2.0, stack.mask)
             bare = number == 0 and self.method.start == "random"
             for left in self._sweeps(surface, stack, level.image, canvas, clock, bare=bare):
                 energy.append(left)
                 self.report("sweeps", len(energy) / (self.method.passes * count))
-        canvas = canvas.continued(levels.onto[-1], image, 1.0)
+        canvas = canvas.continued(levels.onto[-1], image, 1.0, self.exemplar.mask)
         clock.lap("sweeps")
         return Result(canvas.sources(), tuple(energy), clock.seconds, "passes")
 
     def _fitting(self) -> int:
-        """As many levels as asked, or as the sample is large enough for."""
-        least, width = self.exemplar.least_side, self.method.window
-        if least <= width:
-            raise ExemplarError(
-                f"the sample is {least} texels across where it is used, but a neighbourhood takes {width}: "
-                "use a larger sample, or a smaller window"
-            )
-        return min(self.method.levels, 1 + int(np.log2(max(least / (_LEAST * width), 1.0))))
+        """As many levels as asked, or as the sample and its mask have room for neighbourhoods and blocks on."""
+        least, window = self.exemplar.least_side, self.method.window
+        for count in range(self.method.levels, 0, -1):
+            step = 2 ** (count - 1)
+            roomy = count == 1 or least >= _LEAST * window * step
+            if roomy and whole_squares(self.exemplar.usable[::step, ::step], max(window + 1, LEAST_SIDE)).any():
+                return count
+        raise ExemplarError(
+            f"the sample is {least} texels across where it is used, and holds no whole neighbourhood of {window}: "
+            "use a larger sample or mask, or a smaller window"
+        )
 
     def _begin(self, surface: Surface, stack: Exemplar, image: Image) -> Canvas:
         """Blocks of the sample, or its texels at random."""

@@ -87,8 +87,8 @@ class Visits:
         launch(
             find_sources,
             len(chosen),
-            inputs=[chosen, self._around, self._canvas, self._visited, self.guide.as_exemplar, self._tree, desk],
-            outputs=[self.cost],
+            inputs=[chosen, self._around, self._canvas, self._visited, self.guide.as_exemplar, self._tree],
+            outputs=[desk, self.cost],
             grain=1024,
         )
         launch(
