@@ -1,6 +1,7 @@
 """The cells of a planar graph: which half-edges bound each face, walked by their order around the vertices."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from jaxtyping import Bool, Float64, Int, Int32
@@ -43,6 +44,17 @@ class Cells:
         return cell
 
 
+class Graph(Protocol):
+    """What cells are measured on (``texloom.sketch.graph``)."""
+
+    @property
+    def vertices(self) -> Float64[np.ndarray, "vertex 2"]: ...
+    @property
+    def edges(self) -> Int32[np.ndarray, "edge 2"]: ...
+    @property
+    def curve(self) -> Float64[np.ndarray, "edge 3 2"]: ...
+
+
 def find_cells(
     vertices: Float64[np.ndarray, "vertex 2"],
     edges: Int32[np.ndarray, "edge 2"],
@@ -59,6 +71,12 @@ def find_cells(
         area[kept],
         centroid[kept],
     )
+
+
+def again(graph: "Graph", cells: Cells) -> Cells:
+    """The same cells where vertices have moved."""
+    area, centroid, _ = measure(graph.vertices, graph.edges, graph.curve, start=cells.start, halfedge=cells.halfedge)
+    return replace(cells, area=area, centroid=centroid)
 
 
 def measure(

@@ -38,7 +38,7 @@ class Outlines:
         return following
 
     def spread(self, middle: Float64[np.ndarray, "cell 2"]) -> Float64[np.ndarray, "cell 2 2"]:
-        """Second moments of every cell about a place: ∫ x xᵀ over its area."""
+        """The mean of x xᵀ over every cell, x from a place of its own: at the centroid, the covariance."""
         a = self.point - middle[self.cell]
         b = self.point[self.following] - middle[self.cell]
         swept = cross(a, b)
@@ -58,7 +58,7 @@ class Outlines:
         """The cells that a place lies in; with ``period``, any of its copies on a torus of that size."""
         a, b, copies = self.point, self.point[self.following], np.zeros((1, 2))
         if period is not None:
-            copies = np.stack(np.mgrid[-2:3, -2:3], axis=-1).reshape(-1, 2) * np.array(period)
+            copies = (np.stack(np.divmod(np.arange(25), 5), axis=1) - 2) * np.array(period)
         inside = np.zeros(len(self.start) - 1, bool)
         for p in place + copies:
             crosses = (a[:, 0] > p[0]) != (b[:, 0] > p[0])
