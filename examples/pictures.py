@@ -37,8 +37,16 @@ def of_map(map: Map) -> Picture:
     return np.broadcast_to(picture, (*picture.shape[:2], 3)).astype(np.uint8)
 
 
-def coat(surface: Surface, sources: SourceMap, exemplar: Exemplar, views: Sequence[Camera] = (FRONT,)) -> Picture:
-    """A mesh in its texture, colours and normals baked on an atlas."""
+def coat(
+    surface: Surface,
+    sources: SourceMap,
+    exemplar: Exemplar,
+    views: Sequence[Camera] = (FRONT,),
+    *,
+    size: int = _SIDE,
+    margin: int = _MARGIN,
+) -> Picture:
+    """A mesh in its texture, colours and normals baked on an atlas; ``margin`` columns are cut off at both sides."""
     mesh = surface.mesh
     uv = unwrap(mesh, size=_ATLAS)
     tangents = corner_tangents(mesh.vertices, mesh.faces, uv, normals=mesh.vertex_normals[mesh.faces])
@@ -46,9 +54,9 @@ def coat(surface: Surface, sources: SourceMap, exemplar: Exemplar, views: Sequen
     maps = bake(sources, atlas, {name: exemplar.maps[name] for name in ("basecolor", "normal")})
     skin = Skin(texture=maps["basecolor"].image, uv=uv, bumps=maps["normal"].image, tangents=tangents)
     pictures = [
-        preview(mesh.vertices, mesh.faces, skin, normals=mesh.vertex_normals, size=_SIDE, views=[v]) for v in views
+        preview(mesh.vertices, mesh.faces, skin, normals=mesh.vertex_normals, size=size, views=[v]) for v in views
     ]
-    return beside(*(picture[:, _MARGIN:-_MARGIN] for picture in pictures), gap=0)
+    return beside(*(picture[:, margin : size - margin] for picture in pictures), gap=0)
 
 
 def coloured(surface: Surface, colours: Float[np.ndarray, "site 3"], view: Camera = FRONT) -> Picture:
