@@ -11,7 +11,7 @@ from tests.meshes import as_mesh, cone, cylinder, flat_square, slivers, sphere, 
 from texloom.errors import MeshError, ParameterError
 from texloom.kernels import launch
 from texloom.mesh.mesh import Mesh
-from texloom.points import Hierarchy, hierarchy
+from texloom.points import Hierarchy, Level, hierarchy
 
 COUNTS = (150, 600, 2400)
 
@@ -35,6 +35,20 @@ def box(thickness: float) -> Mesh:
     walls = np.concatenate([np.stack(side, axis=1) for side in sides])
     faces = np.concatenate([lattice.faces[:, ::-1], lattice.faces + count, walls])
     return as_mesh(np.concatenate([lattice.vertices, top]), faces)
+
+
+def two_boxes() -> Mesh:
+    """Cubes that share an upright edge, where four faces meet."""
+    one = box(1.0)
+    both = joined(one, as_mesh(one.vertices + [1, 1, 0], one.faces))
+    vertices, number = np.unique(both.vertices.round(9), axis=0, return_inverse=True)
+    return as_mesh(vertices, number.reshape(-1)[both.faces])
+
+
+def upside_down(level: Level) -> int:
+    """Faces that oppose the mean of their corners' normals."""
+    normals = level.normal[level.mesh.faces].mean(1)
+    return int((np.einsum("fx,fx->f", level.mesh.face_normals, normals) < 0).sum())
 
 
 def euler(mesh: Mesh) -> int:
@@ -133,7 +147,7 @@ def test_places_on_the_coarser_level_are_near(made: Hierarchy) -> None:
         face, barycentric = fine.on_coarser
         places = np.einsum("pc,pcx->px", barycentric, coarse.position[coarse.mesh.faces[face]])
         np.testing.assert_array_equal(places[: coarse.count], coarse.position)
-        assert np.linalg.norm(places - fine.position, axis=1).max() < 0.5 * coarse.spacing
+        assert np.linalg.norm(places - fine.position, axis=1).max() < 0.6 * coarse.spacing
     assert made.levels[0].on_coarser is None
 
 
@@ -157,6 +171,18 @@ def test_the_sides_of_a_sheet_do_not_mix(thickness: float, inward: float) -> Non
         assert through.any() and (0.5 - np.abs(middle[:, :2] - 0.5).max(1)).max() < inward * level.spacing
         for side in (level.normal[:, 2] > 0.9, level.normal[:, 2] < -0.9):
             assert side.sum() > 0.4 * level.count
+
+
+def test_an_edge_of_four_faces_is_parted() -> None:
+    """Vertices with several fans once left faces behind whose corners were other points, far away."""
+    mesh = two_boxes()
+    assert not mesh.agrees
+    made = hierarchy(mesh, COUNTS, scale=np.ones(len(mesh.vertices)))
+    for level in made.levels:
+        assert level.mesh.agrees and (level.mesh.twins >= 0).all() and upside_down(level) == 0
+        assert level.mesh.edge_lengths.max() < 2 * level.spacing
+        corners = mesh.vertices[mesh.faces[level.face]]
+        np.testing.assert_allclose(np.einsum("pc,pcx->px", level.barycentric, corners), level.position, atol=1e-12)
 
 
 def test_spacing_follows_the_scale() -> None:
@@ -231,3 +257,14 @@ def test_real_meshes_are_even(name: str) -> None:
     for level in hierarchy(mesh, (1000, 4000)).levels:
         assert level.variation <= 0.1 and level.closest >= 0.5
         assert euler(level.mesh) == euler(mesh)
+
+
+@needs_data
+@pytest.mark.parametrize("name", ["camel-head-open-11k", "teapot-4parts-4k"])
+def test_thin_lips_leave_nothing_upside_down(name: str) -> None:
+    """They are thinner than the points are apart, and rows of needles run along them."""
+    from texloom.io.mesh import read_mesh
+
+    for level in hierarchy(read_mesh(DATA / "meshes" / f"{name}.obj").mesh, (4000, 16_000)).levels:
+        assert upside_down(level) == 0
+        assert level.variation <= 0.08 and level.closest >= 0.5

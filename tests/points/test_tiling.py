@@ -6,11 +6,12 @@ from scipy.spatial import Delaunay
 
 from tests.meshes import cylinder, flat_square, octahedron, sphere, torus
 from texloom.mesh.mesh import Mesh
-from texloom.points.crowding import crowded
+from texloom.mesh.query import closest_points
+from texloom.points.crowding import crowded, upturned
 from texloom.points.ground import Ground
 from texloom.points.places import Places
 from texloom.points.start import start
-from texloom.points.tiling import Tiling
+from texloom.points.tiling import Tiling, any_halfedge
 
 MESHES = {"sphere": sphere(2), "torus": torus(24, 12), "cylinder": cylinder(16, 6), "square": flat_square(8)}
 
@@ -131,3 +132,48 @@ def test_a_crowd_is_found_through_no_sheet() -> None:
     tiling = tiling_of(sheets)
     assert len(crowded(tiling, 0.1)) == 0
     assert len(crowded(tiling, 0.13)) > 0
+
+
+def fin(depth: float = 1.0, thickness: float = 0.02) -> Mesh:
+    """A strip folded at y = 0: up the one side, normal up, over the narrow border, and back below."""
+    across = [(-depth, thickness), (-depth / 2, thickness), (0, thickness), (0, 0), (-depth / 2, 0), (-depth, 0)]
+    lattice = flat_square(5)
+    column, row = (np.round(5 * lattice.vertices[:, axis]).astype(int) for axis in (0, 1))
+    folded = np.array(across)[row]
+    return Mesh(np.stack([0.4 * column - 1, folded[:, 0], folded[:, 1]], axis=1), lattice.faces)
+
+
+def test_the_middle_of_an_edge_over_a_border_is_half_way_over_it() -> None:
+    """The one end is 0.2 from the border above, the other 0.5 below: the middle is 0.15 below, a little aside."""
+    mesh = fin()
+    ground = Ground(mesh, np.ones(len(mesh.vertices)))
+    wanted = np.array([[-0.05, -0.2, 0.02], [0.05, -0.5, 0.0], [-0.6, -0.3, 0.02], [0.6, -0.3, 0.02]])
+    up = mesh.face_normals[:, 2]
+    face, barycentric = np.empty(4, np.int32), np.empty((4, 3))
+    for point, place in enumerate(wanted):
+        sheet = np.flatnonzero(up > 0.9 if place[2] > 0 else up < -0.9)
+        part = Mesh(mesh.vertices, mesh.faces[sheet])
+        found, barycentric[point : point + 1] = closest_points(part, place[None])
+        face[point] = sheet[found[0]]
+    at = ground.positions(face, barycentric) - ground.origin
+    normal = ground.mesh.face_normals[face]
+    places = Places(at, np.ones(4), normal, face, barycentric, np.full(4, -1, np.int32))
+    faces = np.array([[0, 1, 2], [1, 0, 3]], np.int32)
+    twins = Mesh(at, faces).twins
+    tiling = Tiling(ground, places, faces, twins.copy(), any_halfedge(faces, 4), np.ones(4, np.int32), 0.5)
+    middle = tiling.middles(np.flatnonzero(twins >= 0)[:1].astype(np.int32))
+    position = middle.at[0] + ground.origin
+    assert middle.normal[0, 2] < -0.9
+    np.testing.assert_allclose(position, [0, -0.15, 0], atol=0.08)
+
+
+def test_what_lies_upside_down_is_found() -> None:
+    tiling = tiling_of(flat_square(4))
+    assert len(upturned(tiling)) == 0
+    inner = int(np.flatnonzero(tiling.rim == 0)[0])
+    tiling.places.at[inner] += [0.4, 0, 0]  # past its neighbour
+    over = tiling.mesh().face_normals[:, 2] < 0
+    np.testing.assert_array_equal(upturned(tiling), np.unique(tiling.faces[over]))
+    assert inner in upturned(tiling)
+    tiling.frozen = tiling.count
+    assert len(upturned(tiling)) == 0

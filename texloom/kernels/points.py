@@ -1,4 +1,4 @@
-"""Points that spread over a mesh (the ground) with their triangulation: forces, steps, middles of edges.
+"""Points that spread over a mesh (the ground) with their triangulation: forces and steps.
 
 Arrays of the triangulation are those of ``halfedges``, arrays of the ground and of places on it those of ``ground``.
 """
@@ -13,7 +13,6 @@ from texloom.kernels.ground import after, before, descend, place_at, share_betwe
 from texloom.kernels.halfedges import MOST_AROUND, fan_start, next_around
 
 HALF = wp.constant(wp.float64(0.5))
-PARTED = wp.constant(wp.float64(0.3))  # cosine between the normals of an edge's ends, below which it may cut a ridge
 FARTHEST = wp.constant(wp.float64(0.25))  # of the distance wanted, in one step
 
 
@@ -176,87 +175,6 @@ def repel(
     new_face[i] = f
     new_place[i] = b
     new_side[i] = e
-
-
-@wp.kernel(enable_backward=False)
-def halve(
-    start: int,
-    vertex: wp.array(dtype=wp.vec3d),
-    corner: wp.array(dtype=int),
-    across: wp.array(dtype=int),
-    following: wp.array(dtype=int),
-    leading: wp.array(dtype=int),
-    ground_scale: wp.array(dtype=wp.float64),
-    ground_normal: wp.array(dtype=wp.vec3d),
-    tail: wp.array(dtype=int),
-    twin: wp.array(dtype=int),
-    at: wp.array(dtype=wp.vec3d),
-    normal: wp.array(dtype=wp.vec3d),
-    face: wp.array(dtype=int),
-    place: wp.array(dtype=wp.vec3d),
-    side: wp.array(dtype=int),
-    halfedge: wp.array(dtype=int),
-    middle_at: wp.array(dtype=wp.vec3d),
-    middle_scale: wp.array(dtype=wp.float64),
-    middle_normal: wp.array(dtype=wp.vec3d),
-    middle_face: wp.array(dtype=int),
-    middle_place: wp.array(dtype=wp.vec3d),
-    middle_side: wp.array(dtype=int),
-):
-    """The place of the ground in the middle of an edge of the triangulation; on the rim, half way along it."""
-    i = start + wp.tid()
-    p = tail[halfedge[i]]
-    q = tail[after(halfedge[i])]
-    f = int(0)
-    e = int(-1)
-    b = wp.vec3d()
-    if twin[halfedge[i]] < 0:
-        h = 3 * face[p] + side[p]
-        s = place[p][(side[p] + 1) % 3]
-        target = 3 * face[q] + side[q]
-        t = place[q][(side[q] + 1) % 3]
-        length = wp.length(vertex[corner[after(h)]] - vertex[corner[h]]) * (t - s)
-        if h != target or t < s:
-            length = wp.length(vertex[corner[after(h)]] - vertex[corner[h]]) * (wp.float64(1.0) - s)
-            g = following[h]
-            for _ in range(corner.shape[0]):
-                if g == target:
-                    break
-                length = length + wp.length(vertex[corner[after(g)]] - vertex[corner[g]])
-                g = following[g]
-            length = length + wp.length(vertex[corner[after(g)]] - vertex[corner[g]]) * t
-        h, s = slide(vertex, corner, following, leading, h, s, HALF * length)
-        f = h // 3
-        e = h - 3 * f
-        b = between(e, s)
-    else:
-        # From either end half way straight on, with and without going down to the nearest place; where the normals
-        # part, also up the ridge that may lie between, or down the groove. The normal tells the wrong side of a sheet
-        middle = HALF * (at[p] + at[q])
-        mean = wp.normalize(normal[p] + normal[q])
-        length = HALF * wp.length(at[q] - at[p])
-        best = wp.float64(-1.0)
-        tries = wp.where(wp.dot(normal[p], normal[q]) < PARTED, 8, 4)
-        for way in range(tries):
-            v = wp.where(way % 2 == 0, p, q)
-            toward = middle - at[v]
-            if way >= 4:
-                toward = wp.where(way < 6, mean, -mean)
-            g, c, _whole = walk(vertex, corner, across, face[v], place[v], toward, length)
-            if way < 2:
-                g, c, _away = descend(vertex, corner, across, g, middle)
-            n = normal_at(ground_normal, g, c)
-            cost = wp.length_sq(place_at(vertex, corner, g, c) - middle) + length * length * wp.length_sq(n - mean)
-            if best < wp.float64(0.0) or cost < best:
-                best = cost
-                f = g
-                b = c
-    middle_at[i] = place_at(vertex, corner, f, b)
-    middle_scale[i] = scale_at(ground_scale, corner, f, b)
-    middle_normal[i] = normal_at(ground_normal, f, b)
-    middle_face[i] = f
-    middle_place[i] = b
-    middle_side[i] = e
 
 
 @wp.kernel(enable_backward=False)

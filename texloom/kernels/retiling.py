@@ -7,10 +7,11 @@ Arrays are those of ``halfedges``; ``bend`` is what normals count for (``delauna
 
 import warp as wp
 
-from texloom.kernels.delaunay import flip_around, push_around, should_flip
+from texloom.kernels.delaunay import facing, flip_around, push_around, should_flip
 from texloom.kernels.ground import after, before
 from texloom.kernels.halfedges import MOST_AROUND, collapse, fan_start, may_collapse, next_around, split
 
+LEAST_TURN = wp.constant(wp.float64(0.2))  # cosine of the most a face turns when a point beside it goes, if it may
 HALF = wp.constant(wp.float64(0.5))
 
 
@@ -53,13 +54,46 @@ def flip_edges(
     flips[0] = flip_around(tail, twin, first, rim, at, normal, scale, bend, stack, height)
 
 
+@wp.func
+def way_out(
+    tail: wp.array(dtype=int),
+    twin: wp.array(dtype=int),
+    first: wp.array(dtype=int),
+    rim: wp.array(dtype=int),
+    at: wp.array(dtype=wp.vec3d),
+    h: int,
+    frozen: int,
+    least: wp.float64,
+) -> int:
+    """A halfedge by which an end of this edge can go into a neighbour: the edge itself, then any other; -1 for none."""
+    g = int(-1)
+    for end in range(2):
+        from_ = wp.where(end == 0, h, twin[h])
+        if g < 0 and from_ >= 0 and tail[wp.max(from_, 0)] >= frozen:
+            if may_collapse(tail, twin, first, rim, at, from_, least) == 1:
+                g = from_
+    for end in range(2):
+        v = wp.where(end == 0, tail[h], tail[after(h)])
+        if g < 0 and v >= frozen:
+            begin = fan_start(twin, first[v], rim[v])
+            e = int(begin)
+            for _ in range(MOST_AROUND):
+                if may_collapse(tail, twin, first, rim, at, e, least) == 1:
+                    g = e
+                    break
+                e = next_around(twin, e, begin)
+                if e < 0:
+                    break
+    return g
+
+
 @wp.kernel(enable_backward=False)
 def collapse_edges(
     start: int,
     halfedge: wp.array(dtype=int),  # in the order to try them; the tail goes, unless only the head may
     most: int,
     longest: wp.float64,  # in scales
-    least: wp.float64,  # cosine of the most a face may turn
+    least: wp.float64,  # cosine of the most a face may turn; less than that is tried first
     frozen: int,
     at: wp.array(dtype=wp.vec3d),
     normal: wp.array(dtype=wp.vec3d),
@@ -79,31 +113,41 @@ def collapse_edges(
             a = tail[h]
             b = tail[after(h)]
             if wp.length(at[a] - at[b]) < longest * HALF * (scale[a] + scale[b]):
-                # The edge itself, then any other of its ends'
-                g = int(-1)
-                for end in range(2):
-                    from_ = wp.where(end == 0, h, twin[h])
-                    if g < 0 and from_ >= 0 and tail[wp.max(from_, 0)] >= frozen:
-                        if may_collapse(tail, twin, first, rim, at, from_, least) == 1:
-                            g = from_
-                for end in range(2):
-                    v = wp.where(end == 0, a, b)
-                    if g < 0 and v >= frozen:
-                        begin = fan_start(twin, first[v], rim[v])
-                        e = int(begin)
-                        for _ in range(MOST_AROUND):
-                            if may_collapse(tail, twin, first, rim, at, e, least) == 1:
-                                g = e
-                                break
-                            e = next_around(twin, e, begin)
-                            if e < 0:
-                                break
+                g = way_out(tail, twin, first, rim, at, h, frozen, wp.max(least, LEAST_TURN))
+                if g < 0 and least < LEAST_TURN:
+                    g = way_out(tail, twin, first, rim, at, h, frozen, least)
                 if g >= 0:
                     kept = tail[after(g)]
                     collapse(tail, twin, first, rim, g)
                     height = push_around(tail, twin, fan_start(twin, first[kept], rim[kept]), stack, 0)
                     flip_around(tail, twin, first, rim, at, normal, scale, bend, stack, height)
                     gone[0] = gone[0] + 1
+
+
+@wp.func
+def overturns(
+    tail: wp.array(dtype=int),
+    twin: wp.array(dtype=int),
+    at: wp.array(dtype=wp.vec3d),
+    normal: wp.array(dtype=wp.vec3d),
+    h: int,
+    v: int,
+) -> bool:
+    """Whether cutting an edge at point v makes a face that opposes the ground, more than a face there does now.
+
+    The rim is followed whatever comes of it.
+    """
+    over = bool(False)
+    for side in range(2):
+        g = wp.where(side == 0, h, twin[h])
+        if twin[h] >= 0:
+            a = tail[g]
+            b = tail[after(g)]
+            c = tail[before(g)]
+            then = wp.min(facing(at, normal, a, v, c), facing(at, normal, v, b, c))
+            if then < wp.float64(0.0) and then < facing(at, normal, a, b, c):
+                over = True
+    return over
 
 
 @wp.kernel(enable_backward=False)
@@ -113,6 +157,7 @@ def split_edges(
     most: int,
     points: int,  # the first ones; point ``points + i`` goes onto edge i
     faces: int,
+    anyhow: bool,  # even where a face would oppose the ground
     at: wp.array(dtype=wp.vec3d),
     normal: wp.array(dtype=wp.vec3d),
     scale: wp.array(dtype=wp.float64),
@@ -132,8 +177,8 @@ def split_edges(
         if t >= 0:
             if tail[before(t)] >= points:
                 fresh = 0
-        if fresh == 1 and count[0] < most:
-            v = points + i
+        v = points + i
+        if fresh == 1 and count[0] < most and (anyhow or not overturns(tail, twin, at, normal, h, v)):
             split(tail, twin, first, h, v, 3 * (faces + count[1]))
             count[0] = count[0] + 1
             count[1] = count[1] + wp.where(t < 0, 1, 2)

@@ -20,6 +20,16 @@ def crowded(tiling: Tiling, distance: float) -> Int32[np.ndarray, "n"]:
     return found[found >= tiling.frozen].astype(np.int32)
 
 
+def upturned(tiling: Tiling) -> Int32[np.ndarray, "n"]:
+    """Points of faces that oppose the ground at their corners, those that are not frozen."""
+    a, b, c = tiling.faces.T
+    at, normal = tiling.places.at, tiling.places.normal
+    across = np.cross(at[b] - at[a], at[c] - at[a])
+    over = np.einsum("fx,fx->f", across, normal[a] + normal[b] + normal[c]) < 0
+    found = np.unique(tiling.faces[over])
+    return found[found >= tiling.frozen].astype(np.int32)
+
+
 def _near_another(tiling: Tiling, distance: float) -> Int[np.ndarray, "n"]:
     """The later points of all pairs that are too near."""
     from scipy.spatial import KDTree

@@ -8,7 +8,7 @@ import numpy as np
 
 from texloom.errors import ParameterError
 from texloom.points.corners import corners
-from texloom.points.crowding import crowded
+from texloom.points.crowding import crowded, upturned
 from texloom.points.ground import Ground
 from texloom.points.places import Places
 from texloom.points.start import start
@@ -19,7 +19,7 @@ _BEND = 0.5  # spacings that opposite normals put two points apart, half of them
 _APART = (0.3, 0.5, 0.65, 0.8)  # spacings: edges shorter than that are collapsed, in this order
 _STEPS = 60  # of repulsion from a start, and the most ever
 _FEWEST_STEPS, _ALL_STEPS = 12, 1_000_000  # of repulsion after a level is refined: each point's, and in all
-_NEAR, _FAR = 0.5, 1.6  # spacings: edges beyond are wrong
+_NEAR, _FAR = 0.56, 1.6  # spacings: edges beyond are wrong
 _ROUNDS = 8  # of putting them right
 _LOCAL_STEPS, _RINGS = 8, 3  # of repulsion after that, and how far around it goes
 _HOPELESS = 0.002  # of the points: with more wrong than that, and no fewer than a round before, it is the mesh
@@ -74,6 +74,8 @@ def _finer(tiling: Tiling, count: int, *, seed: int, frozen: int) -> Tiling:
     tiling = tiling.copy(bend=_BEND * spacing, frozen=frozen)
     if count >= _FULL * (tiling.count + tiling.edge_count):
         tiling.quarter()
+    tiling.flip()
+    tiling.take_out(upturned(tiling))
     _adjust(tiling, count, seed=seed)
     tiling.flip()
     tiling.spread(spacing, min(max(_ALL_STEPS // count, _FEWEST_STEPS), _STEPS))
@@ -104,7 +106,7 @@ def _even_out(tiling: Tiling, spacing: float, *, seed: int) -> None:
     """Take points from where they are too near each other to where they are too far, and let all settle.
 
     Where that does not help, because edges cut a ridge and their middles end up beside other points, points that are
-    too near go elsewhere, and the edges stay long.
+    too near go elsewhere, and the edges stay long. So do points of faces that lie upside down.
     """
     count, before = tiling.count, np.inf
     for turn in range(_ROUNDS):
@@ -116,11 +118,11 @@ def _even_out(tiling: Tiling, spacing: float, *, seed: int) -> None:
         before = wrong
         tiling.thin_out((_NEAR + 0.25) * spacing, most=wrong, seed=seed, shortest_first=True, careful=False)
         _fill(tiling, count, spacing, seed=seed, careful=careful)
-    for _ in range(_ROUNDS // 2):
-        near = crowded(tiling, _NEAR * spacing)
-        if len(near) == 0:
+    for _ in range(_ROUNDS):
+        astray = np.union1d(crowded(tiling, _NEAR * spacing), upturned(tiling))
+        if len(astray) == 0:
             break
-        tiling.take_out(near)
+        tiling.take_out(astray)
         _fill(tiling, count, spacing, seed=seed, careful=True)
 
 

@@ -11,7 +11,8 @@ from jaxtyping import Float64, Int, Int32
 
 from texloom import draws
 from texloom.kernels.launch import launch
-from texloom.kernels.points import halve, repel
+from texloom.kernels.middles import halve
+from texloom.kernels.points import repel
 from texloom.kernels.retiling import collapse_edges, flip_edges, mark_flips, split_edges
 from texloom.mesh.mesh import Mesh
 from texloom.points.ground import Ground
@@ -180,8 +181,10 @@ class Tiling:
         self.twins = np.concatenate([self.twins, np.full(6 * most, -1, np.int32)])
         self.first = np.concatenate([self.first, np.full(extra, -1, np.int32)])
         count = np.zeros(2, np.int32)
-        inputs = [chosen, most, points, len(self.faces) - 2 * most, *self._shape, self.rim]
-        launch(split_edges, 1, inputs=inputs, outputs=[np.empty(4096, np.int32), *self._links[:3], count])
+        for anyhow in (False, True):
+            if count[0] == 0:
+                inputs = [chosen, most, points, len(self.faces) - 2 * most, anyhow, *self._shape, self.rim]
+                launch(split_edges, 1, inputs=inputs, outputs=[np.empty(4096, np.int32), *self._links[:3], count])
         self._pack()
         return int(count[0])
 
