@@ -57,9 +57,11 @@ def test_scores_do_not_depend_on_the_file(folder: Path, capsys: Captured) -> Non
         assert command.main(["score", str(folder / "weave"), str(folder / name), "--json"]) == 0
         tables.append(json.loads(capsys.readouterr().out)["scores"])
     assert list(tables[0]) == ["basecolor", "normal"]
-    assert set(tables[0]["basecolor"]) == {"swd", "coherence", "completeness"}
+    assert list(tables[0]["basecolor"]) == ["swd", "coherence", "completeness", "copy"]
     for name, scores in tables[0].items():
+        by_colours, by_sources = scores.pop("copy"), tables[1][name].pop("copy")
         assert scores == pytest.approx(tables[1][name], rel=0.02, abs=0.02)
+        assert 0.5 * by_sources < by_colours < 1.2 * by_sources
 
 
 def test_the_own_sample_scores_best(folder: Path) -> None:
@@ -67,13 +69,14 @@ def test_the_own_sample_scores_best(folder: Path) -> None:
     painted = from_glb(folder / "a.glb", read_exemplar(folder / "weave"))
     own = score_painted(read_exemplar(folder / "weave"), painted)["basecolor"]
     other = score_painted(draw("bricks", size=48), painted)["basecolor"]
-    assert own.swd < 0.5 * other.swd and own.coherence < 0.5 * other.coherence
-    assert own.completeness < 0.5 * other.completeness
+    for name in ("swd", "coherence", "completeness"):
+        assert own[name] < 0.5 * other[name], name
+    assert own["copy"] > 1.2 * other["copy"]
 
 
 def test_sources_on_an_atlas_score_too(folder: Path, capsys: Captured) -> None:
     assert command.main(["score", str(folder / "weave"), str(folder / "b.npz")]) == 0
-    assert capsys.readouterr().out.splitlines()[0].split() == ["map", "swd", "coherence", "completeness"]
+    assert capsys.readouterr().out.splitlines()[0].split() == ["map", "swd", "coherence", "completeness", "copy"]
 
 
 def test_sources_of_an_image_score_as_the_image(folder: Path, capsys: Captured) -> None:

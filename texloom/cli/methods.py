@@ -9,6 +9,7 @@ from texloom.cli.options import (
     PRESET_METHODS,
     PRESETS,
     SEARCHES,
+    SHAPES,
     SURFACE_METHODS,
     SURFACE_PRESETS,
     SWEEP_SEARCHES,
@@ -122,6 +123,9 @@ def wish(
     if method == "sweep":
         given["search"] = None if search is None else choose("search", search, SWEEP_SEARCHES)
         search = None
+        random = given.get("start") == "random" or (preset == "sweep" and given.get("start") is None)
+        if given.get("shape") in SHAPES and not random:
+            raise ParameterError(f"--shape {given['shape']} is for a random copy's first sweep: add --start random")
     if search is not None:
         choose("search", search, SEARCHES)
         if preset is None:

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float32, Shaped
 
+from texloom.arrays import Image
 from texloom.cli.guides import on_mesh
 from texloom.cli.reapply import ATLAS, SURFACE, check_sample
 from texloom.domain.patches import Patches
@@ -16,12 +17,13 @@ from texloom.exemplar.exemplar import Exemplar, Map
 from texloom.field.direction import from_vectors
 from texloom.mesh.gltf import Document, accessor, primitives, unpack
 from texloom.mesh.mesh import Mesh
-from texloom.metrics import SurfaceScores, score_surface
-from texloom.metrics.patches import Usable
+from texloom.metrics import SurfaceScores, apparent_sources, score_surface, surface_copy_side
+from texloom.metrics.patches import Usable, encoded
 from texloom.output.gather import gather_sites
 from texloom.output.image import stored
 from texloom.output.material import base_colour
 from texloom.output.sources_file import SavedSources
+from texloom.sources import SourceMap
 
 _WIDTH = 24  # texels: side of the patches that are looked at, and from one to the next
 _AGAIN = "texture the mesh --as vertex and score that .glb"
@@ -34,10 +36,11 @@ class Painted:
 
     surface: Surface
     values: dict[str, Float32[np.ndarray, "site channel"]]
+    sources: SourceMap | None = None  # where they are known
 
 
-def score_painted(exemplar: Exemplar, painted: Painted) -> dict[str, SurfaceScores]:
-    """Scores of every map that the sample and the surface both have.
+def score_painted(exemplar: Exemplar, painted: Painted) -> dict[str, dict[str, float]]:
+    """``SurfaceScores`` of every map that the sample and the surface both have; ``copy`` is that of the first.
 
     Raises: ParameterError, if there is none, or no patch fits on the surface.
     """
@@ -46,7 +49,14 @@ def score_painted(exemplar: Exemplar, painted: Painted) -> dict[str, SurfaceScor
         held = f"the sample holds {', '.join(exemplar.maps)}, the surface {', '.join(painted.values)}"
         raise ParameterError(f"{held}: no map in common")
     patches = scored_patches(painted.surface)
-    return {name: score_sites(exemplar.maps[name], patches, painted.values[name]) for name in names}
+    scores = {name: vars(score_sites(exemplar.maps[name], patches, painted.values[name])) for name in names}
+    sources = painted.sources
+    if sources is None:
+        lead = exemplar.maps[names[0]]
+        seen = _as_seen(lead, painted.values[names[0]])
+        sources = apparent_sources(_sample(lead), painted.surface, seen, usable=exemplar.mask)
+    copied = surface_copy_side(sources, painted.surface)
+    return {name: {**own, "copy": copied} for name, own in scores.items()}
 
 
 def scored_patches(surface: Surface) -> Patches:
@@ -63,9 +73,18 @@ def score_sites(
     most: int | None = None,
 ) -> SurfaceScores:
     """Scores of one map, both as stored; see ``score_surface``."""
+    return score_surface(_sample(sample), patches, _as_seen(sample, values), usable=usable, most=most)
+
+
+def _sample(sample: Map) -> Image:
+    """A map as stored, 16 bits where it is float."""
+    return encoded(stored(sample, min(sample.bits, 16)))
+
+
+def _as_seen(sample: Map, values: Float32[np.ndarray, "site channel"]) -> Float32[np.ndarray, "site channel"]:
+    """What sites show of a map, as stored."""
     seen = np.clip(encode(values) if sample.kind == "colour" else values, 0.0, 1.0)
-    shown = seen[:, : sample.image.shape[2]]
-    return score_surface(stored(sample, min(sample.bits, 16)), patches, shown, usable=usable, most=most)
+    return np.ascontiguousarray(seen[:, : sample.image.shape[2]], np.float32)
 
 
 def from_sources(saved: SavedSources, exemplar: Exemplar, name: str) -> Painted:
@@ -86,7 +105,8 @@ def from_sources(saved: SavedSources, exemplar: Exemplar, name: str) -> Painted:
         texel=float(sites["texel"]),
         symmetry=int(sites["symmetry"]),
     )
-    return Painted(surface, {key: gather_sites(saved.sources, map) for key, map in exemplar.maps.items()})
+    values = {key: gather_sites(saved.sources, map) for key, map in exemplar.maps.items()}
+    return Painted(surface, values, saved.sources)
 
 
 def from_glb(path: Path, exemplar: Exemplar) -> Painted:

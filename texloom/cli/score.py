@@ -12,7 +12,6 @@ from texloom.errors import ParameterError
 
 if TYPE_CHECKING:
     from texloom.exemplar.exemplar import Exemplar, Map
-    from texloom.metrics import Scores, SurfaceScores
 
 
 def score(
@@ -27,7 +26,7 @@ def score(
     threads: options.Threads = None,
     as_json: options.Json = False,
 ) -> None:
-    """Print how a result compares to its sample: swd, coherence, completeness, of images copy and seam, map by map."""
+    """Print how a result compares to its sample: swd, coherence, completeness, copy, of images seam, map by map."""
     if sample.suffix.lower() in options.MESH_SUFFIXES:
         raise ParameterError(f"{sample.name} is a mesh: the first file is the sample, an image or a folder of maps")
     with Session(threads=threads, as_json=as_json) as session:
@@ -37,7 +36,7 @@ def score(
             exemplar = read_exemplar(sample)
         with session.stage("score"):
             table = _scored(exemplar, result, sample.name, session)
-        session.finish({"scores": {name: vars(scores) for name, scores in table.items()}}, text=_as_table(table))
+        session.finish({"scores": dict(table)}, text=_as_table(table))
 
 
 def as_seen(map: "Map") -> Any:
@@ -47,9 +46,7 @@ def as_seen(map: "Map") -> Any:
     return stored(map, min(map.bits, 16))
 
 
-def _scored(
-    exemplar: "Exemplar", result: Path, sample: str, session: Session
-) -> "Mapping[str, Scores] | Mapping[str, SurfaceScores]":
+def _scored(exemplar: "Exemplar", result: Path, sample: str, session: Session) -> Mapping[str, Mapping[str, float]]:
     """Scores by map, whatever the result is."""
     if result.suffix.lower() in options.MESH_SUFFIXES:
         from texloom.cli.painted import from_glb, score_painted
@@ -72,7 +69,7 @@ def _scored(
 
 def _score_images(
     theirs: "Mapping[str, Map]", ours: "Mapping[str, Map]", files: tuple[str, str], session: Session
-) -> "dict[str, Scores]":
+) -> dict[str, Mapping[str, float]]:
     """Scores of every map that both have."""
     from texloom.metrics import score as score_map
 
@@ -80,18 +77,18 @@ def _score_images(
     if not names:
         held = f"{files[0]} holds {', '.join(theirs)}, {files[1]} holds {', '.join(ours)}"
         raise ParameterError(f"{held}: no map in common")
-    table = {}
+    table: dict[str, Mapping[str, float]] = {}
     for done, name in enumerate(names):
         session.report(f"score {name}", done / len(names))
-        table[name] = score_map(as_seen(theirs[name]), as_seen(ours[name]))
+        table[name] = vars(score_map(as_seen(theirs[name]), as_seen(ours[name])))
     return table
 
 
-def _as_table(table: "Mapping[str, Scores] | Mapping[str, SurfaceScores]") -> str:
+def _as_table(table: Mapping[str, Mapping[str, float]]) -> str:
     """One line a map, one column a score."""
-    names = list(vars(next(iter(table.values()))))
+    names = list(next(iter(table.values())))
     width = max(len("map"), *(len(name) for name in table))
     lines = [f"{'map':<{width}}" + "".join(f"{name:>14}" for name in names)]
     for map_name, scores in table.items():
-        lines.append(f"{map_name:<{width}}" + "".join(f"{value:>14.3f}" for value in vars(scores).values()))
+        lines.append(f"{map_name:<{width}}" + "".join(f"{value:>14.3f}" for value in scores.values()))
     return "\n".join(lines)

@@ -16,7 +16,7 @@ from texloom.metrics.score import QUERIES, fewer
 
 @dataclass(frozen=True)
 class SurfaceScores:
-    """As on a plane (``Scores``); resampled colours are never the stored ones, so ask the sources about copying."""
+    """As on a plane (``Scores``); for resampled colours, which are never the stored ones, see ``surface_copying``."""
 
     swd: float
     coherence: float
