@@ -33,6 +33,10 @@ if TYPE_CHECKING:
     from texloom.output.textons_file import save_textons as save_textons
     from texloom.search.textons import Textons as Textons
     from texloom.search.textons import learn_textons as learn_textons
+    from texloom.sketch.design import Design as Design
+    from texloom.sketch.mesh import TextureMesh as TextureMesh
+    from texloom.sketch.read import read_sketch as read_sketch
+    from texloom.sketch.sample import SketchSample as SketchSample
     from texloom.sources import SourceMap as SourceMap
     from texloom.synthesis.boundary import BoundarySampling as BoundarySampling
     from texloom.synthesis.fill import fill as fill
@@ -50,6 +54,7 @@ __version__ = "0.1.0"
 # Imported when first asked for: a command that needs one of them does not wait for the rest.
 _HOMES = {
     "BoundarySampling": "synthesis.boundary",
+    "Design": "sketch.design",
     "Exemplar": "exemplar.exemplar",
     "Faces": "domain.faces",
     "Grid": "domain.grid",
@@ -60,10 +65,12 @@ _HOMES = {
     "Quilting": "synthesis.quilting",
     "Refine": "synthesis.refine",
     "RefinePatches": "synthesis.refine_patches",
+    "SketchSample": "sketch.sample",
     "SourceMap": "sources",
     "Surface": "domain.surface",
     "Sweep": "synthesis.sweep",
     "Textons": "search.textons",
+    "TextureMesh": "sketch.mesh",
     "fill": "synthesis.fill",
     "filled_maps": "output.filled",
     "from_array": "exemplar.exemplar",
@@ -75,6 +82,7 @@ _HOMES = {
     "on_sample": "output.sample_uv",
     "read_exemplar": "io.stack",
     "read_mesh": "io.mesh",
+    "read_sketch": "sketch.read",
     "save_textons": "output.textons_file",
     "score": "metrics.score",
     "smoothest": "field.smooth",
@@ -87,6 +95,7 @@ _HOMES = {
 
 __all__ = [
     "BoundarySampling",
+    "Design",
     "Exemplar",
     "Faces",
     "Grid",
@@ -97,9 +106,12 @@ __all__ = [
     "Quilting",
     "Refine",
     "RefinePatches",
+    "SketchSample",
     "SourceMap",
     "Surface",
+    "Sweep",
     "Textons",
+    "TextureMesh",
     "__version__",
     "fill",
     "filled_maps",
@@ -112,6 +124,7 @@ __all__ = [
     "on_sample",
     "read_exemplar",
     "read_mesh",
+    "read_sketch",
     "save_textons",
     "score",
     "smoothest",

@@ -122,3 +122,21 @@ def test_nothing_ever_crosses_or_flips(count: int, seed: int, radius: float, str
     assert euler(graph) == 0 and len(graph.cells()) == len(cells)
     if cells.area.sum() == pytest.approx(np.prod(graph.size)):
         assert graph.cells().area.sum() == pytest.approx(np.prod(graph.size))
+
+
+def test_discs_come_from_all_sketches() -> None:
+    sketches = voronoi(30, 1), voronoi(20, 2, size=(120.0, 150.0)), wall(6, 3)
+    tiling = tile(seamless_patch(sketches, 0), (600, 900), scale=0.5, tileable=True)
+    reach, *_, middle = _discs(tiling, 5, 4)
+    sheets = (tiling.patch.sheets.reshape(-1, 2, 2) + 0.5) * tiling.scale - 0.5
+    within = (middle >= sheets[:, None, 0] + reach - 1e-9) & (middle <= sheets[:, None, 1] - reach + 1e-9)
+    owner = within.all(axis=2)
+    assert (owner.sum(axis=0) == 1).all()
+    np.testing.assert_allclose(owner.mean(axis=1), 1 / 3, atol=0.12)
+
+
+def test_one_sketch_among_one_is_that_sketch() -> None:
+    sketch = voronoi(30, 1)
+    one, alone = (tile(seamless_patch(given, 1), (160, 220), scale=1.0, tileable=True) for given in ((sketch,), sketch))
+    moved = [refined(tiling, 3, radius=15.0, iterations=2, strength=0.5).vertices for tiling in (one, alone)]
+    np.testing.assert_array_equal(*moved)

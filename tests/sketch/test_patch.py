@@ -141,3 +141,26 @@ def test_curves_that_part_at_a_sharp_angle_become_chords_and_others_stay() -> No
     np.testing.assert_allclose((chords[0, 0], chords[-1, 3]), vertices[[0, 2]])
     np.testing.assert_allclose(np.diff(chords, n=2, axis=1), 0, atol=1e-9)
     assert len(chords) > 3 and not len(bent.crossings())
+
+
+def test_of_several_sketches_the_best_crop_is_taken() -> None:
+    sketches = voronoi(60, seed=2), wall(6, 3), voronoi(40, seed=5)
+    patch = seamless_patch(sketches, 0)
+    alone = seamless_patch(sketches[1], 0)
+    assert patch.sketch == 1 and patch.cost == 0 and patch.note is None
+    np.testing.assert_array_equal(patch.graph.vertices, alone.graph.vertices)
+    costs = [seamless_patch(sketch, 0).cost for sketch in sketches[::2]]
+    others = seamless_patch(sketches[::2], 0)
+    assert others.cost == min(costs) and others.sketch == np.argmin(costs)
+
+
+def test_several_sketches_lie_apart_on_one_page() -> None:
+    sketches = voronoi(60, seed=2), wall(6, 3), voronoi(40, seed=5, size=(90.0, 120.0))
+    patch = seamless_patch(sketches, 0)
+    top, left, bottom, right = patch.sheets.T
+    np.testing.assert_allclose([bottom - top, right - left], np.transpose([sketch.size for sketch in sketches]))
+    assert (left[1:] >= right[:-1]).all() and (np.diff(patch.joints[:, 0]) >= 0).all()
+    for sheet, sketch in zip(patch.sheets, sketches, strict=True):
+        on_it = patch.joints[((patch.joints >= sheet[:2]) & (patch.joints <= sheet[2:])).all(axis=1)] - sheet[:2]
+        own = seamless_patch(sketch, 0).joints + 0.5
+        np.testing.assert_allclose(on_it[np.lexsort(on_it.T)], own[np.lexsort(own.T)], atol=1e-9)

@@ -1,6 +1,7 @@
 """Texture grown over a mesh texel by texel: what ``texloom surface`` does for the methods that work on sites."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -27,8 +28,15 @@ def grow(wish: SurfaceWish, session: Session) -> Texture:
         joined = join(stacks)
         colours = fusing.parse_palette(wish.fusion.palette)
         chosen = wish.method.build()
+    learnt, drawn, mended = joined.exemplar, None, []
+    if wish.sketches:
+        with session.stage("design"):
+            from texloom.cli.sketches import designed
+
+            drawn, mended = designed(wish.sketches, stacks, wish.samples, seed=wish.seed)
+            learnt = drawn.exemplar
     if wish.analysis is not None and wish.fusion.map is None:
-        chosen = with_analysis(chosen, wish.analysis, joined.exemplar, session)
+        chosen = with_analysis(chosen, wish.analysis, learnt, session)
     tell_dropped(joined)
     guides, method = wish.guides, wish.method
 
@@ -54,7 +62,9 @@ def grow(wish: SurfaceWish, session: Session) -> Texture:
             shown, result = fused.joined, fused.result
             assigned = {"samples": where.told(wish.samples, fused.labels)}
         else:
-            result = synthesize(joined.exemplar, domain, chosen, seed=wish.seed, report=session.report)
+            result = synthesize(learnt, domain, chosen, seed=wish.seed, report=session.report)
+            if drawn is not None:
+                result = replace(result, sources=drawn.in_samples(result.sources))
         session.add(result.seconds)
         settings = options.settings(
             "surface",
@@ -67,6 +77,7 @@ def grow(wish: SurfaceWish, session: Session) -> Texture:
             scale=guides.scale,
             symmetry=guides.symmetry,
             mask=wish.mask,
+            sketch=", ".join(Path(word).name for word in wish.sketches) or None,
             fuse=None if wish.fusion.map is None else Path(wish.fusion.map).name,
             belts=belts,
         )
@@ -102,7 +113,7 @@ def grow(wish: SurfaceWish, session: Session) -> Texture:
             "stopped": result.stopped,
             "as": wish.home,
             "uv": homecoming.uv,
-            "mends": list(model.mends),
+            "mends": [*mended, *model.mends],
         }
 
     return texture

@@ -19,6 +19,7 @@ from texloom.cli.inspect import inspect
 from texloom.cli.points import points
 from texloom.cli.score import score
 from texloom.cli.session import written
+from texloom.cli.sketch import sketch
 from texloom.cli.surface import surface
 from texloom.cli.textons import textons
 from texloom.errors import TexloomError
@@ -32,7 +33,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (image, surface, fill, fuse, apply, textons, points, inspect, score, demo):
+for _command in (image, surface, fill, fuse, sketch, apply, textons, points, inspect, score, demo):
     app.command()(_command)
 
 

@@ -66,6 +66,14 @@ SweepWidth = Annotated[
     int | None, typer.Option("--window", metavar="N", help="With sweep: texels a side of a neighbourhood; 7.")
 ]
 SweepPasses = Annotated[int | None, typer.Option("--passes", metavar="N", help="With sweep: sweeps of each level; 2.")]
+Sketches = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--sketch",
+        metavar="SKETCH",
+        help="Cells to lay: an SVG, a drawing, a picture, or random; any number, used together.",
+    ),
+]
 Seed = Annotated[int, typer.Option(metavar="N", help="Same seed, same pixels.")]
 Device = Annotated[str, typer.Option(metavar="NAME", help="cpu or cuda.")]
 Threads = Annotated[int | None, typer.Option(metavar="N", min=1, max=1024, help="CPU threads; all cores if not given.")]

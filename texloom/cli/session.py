@@ -13,6 +13,7 @@ from typing import Any
 from texloom.cli.options import DEVICES, choose
 from texloom.errors import ParameterError
 
+_MENDS = 6  # told in words
 _written: list[Path] = []
 
 
@@ -116,6 +117,8 @@ def _words(name: str, value: Any) -> str:
         between = "\n" if any(isinstance(part, Mapping) for part in value.values()) else ", "
         return between.join(f"{key} {_words(key, part)}" for key, part in value.items())
     if isinstance(value, (list, tuple)):
+        if name == "mends" and len(value) > _MENDS:
+            value = [*value[:_MENDS], f"and {len(value) - _MENDS} more: --json tells all"]
         between = (
             "\n"
             if name in ("files", "mends", "learnt for")

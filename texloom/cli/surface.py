@@ -29,6 +29,7 @@ def surface(
     ] = None,
     palette: Palette = None,
     belts: Belts = None,
+    sketch: options.Sketches = None,
     repeats: Annotated[
         float | None,
         typer.Option(metavar="R", help="Sample widths across the longest side; 3, or what a million texels hold."),
@@ -94,7 +95,9 @@ def surface(
     sweeping = {"levels": levels, "start": start, "shape": shape, "order": order, "window": window, "passes": passes}
     quilts = preset == "texton" or (method == "texton" and preset is None)
     if quilts:
-        quilting.check(method, search=search, fuse=fuse, analysis=analysis, **sweeping)
+        quilting.check(
+            method, search=search, fuse=fuse, sketch=", ".join(sketch or []) or None, analysis=analysis, **sweeping
+        )
     else:
         quilting.refuse(edges, samples)
     if repeats is not None and texel is not None:
@@ -110,6 +113,7 @@ def surface(
         repeats=repeats,
         texel=texel,
         guides=Guides(direction, scale, symmetry, progressive),
+        sketches=sketch or [],
         fusion=Fusion(fuse, palette, options.choose("belts", belts or BELTS[0], BELTS)),
         method=None if quilts else methods.wish(method, search, preset, surface=True, **sweeping),
         quilting=quilting if quilts else None,
@@ -126,6 +130,12 @@ def surface(
     )
     options.check_mask(mask, samples)
     _check_fusion(fuse, palette, preset)
+    if fuse is not None and method == "sweep":
+        raise ParameterError("--method sweep grows whole textures and cannot continue one: choose another for --fuse")
+    if fuse is not None and sketch:
+        raise ParameterError(
+            f"--fuse and --sketch {sketch[0]} exclude each other: one says where samples go, one cells"
+        )
     if not quilts:
         check_analysis(analysis, preset)
     options.check_report(report)

@@ -75,6 +75,7 @@ class SurfaceWish:
     repeats: float | None
     texel: float | None
     guides: Guides
+    sketches: Sequence[str]  # of the cells to design a texture by; none: the samples as they are
     fusion: Fusion
     method: "MethodWish | None"  # None: quilting
     quilting: QuiltWish | None

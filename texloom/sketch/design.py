@@ -99,7 +99,8 @@ class Design:
             wanted = painted(self.maps.cell, self.pattern, palette=known.palette, count=len(self.cells))
             kinds = known.of_cell, wanted
         beside = neighbours(self.graph, self.cells)
-        return self.deal.run(self.sample.shapes, self.shapes, beside, kinds=kinds, seed=self.seed)
+        usable = self.sample.unmasked
+        return self.deal.run(self.sample.shapes, self.shapes, beside, kinds=kinds, usable=usable, seed=self.seed)
 
     @property
     def kinds(self) -> Int32[np.ndarray, "cell"]:

@@ -1,4 +1,4 @@
-"""Repetition taken out of a texture mesh: discs of the sketch are laid on it, and draw its vertices to theirs.
+"""Repetition taken out of a texture mesh: discs of the sketches are laid on it, and draw its vertices to theirs.
 
 Wang et al. 2014, eqs 7-8.
 """
@@ -11,7 +11,7 @@ from texloom.kernels.launch import launch
 from texloom.sketch.graph import CellGraph
 from texloom.sketch.tiling import Tiling
 
-_DISC = 0.25  # radius of a disc, of the sketch's shorter side
+_DISC = 0.25  # radius of a disc, of the shortest side of a sketch
 _PITCH = 2.25  # radii from disc to disc, at least: on a lattice, each shifted within its cell
 _SHAKE = 0.04  # R of eq. 7, of the radius of the neighbourhood
 _HALVINGS = 5
@@ -19,9 +19,9 @@ _LEAST = 0.1  # area a triangle keeps, of what it had in the patch
 
 
 def refined(tiling: Tiling, seed: int, *, radius: float, iterations: int, strength: float) -> CellGraph:
-    """The texture mesh with vertices moved towards the sketch's within ``radius`` texels, ``strength`` (w) of the way.
+    """The texture mesh with vertices moved towards a sketch's within ``radius`` texels, ``strength`` (w) of the way.
 
-    In each iteration discs of the sketch, drawn at random, are laid at random so that none overlap. Only the ends of
+    In each iteration discs of the sketches, drawn at random, are laid at random so that none overlap. Only the ends of
     curves are drawn; what lies between is carried along. What would turn over a triangle of the web goes half as far,
     and half again, or stays: nothing crosses, no cell flips.
     """
@@ -52,15 +52,17 @@ def _discs(
     Float64[np.ndarray, "disc 2"],
     Float64[np.ndarray, "disc 2"],
 ]:
-    """Discs' radius, the lattice they lie in and its corner, their middles in its cells, and the same in the sketch."""
+    """Discs' radius, their lattice and its corner, their middles in its cells, and those among the sketches."""
     size = np.array(tiling.graph.size)
-    sketch = np.array(tiling.patch.sketch_size) * tiling.scale
-    reach = float(min(_DISC * sketch.min(), size.min() / _PITCH))
+    sheets = (tiling.patch.sheets.reshape(-1, 2, 2) + 0.5) * tiling.scale
+    corner, sides = sheets[:, 0], sheets[:, 1] - sheets[:, 0]
+    reach = float(min(_DISC * sides.min(), size.min() / _PITCH))
     cells = np.maximum(np.floor(size / (_PITCH * reach)), 1).astype(np.int64)
     count = int(cells.prod())
     chance = draws.uniform(seed, 0, index=np.arange(iterations * (2 + 4 * count))).astype(np.float64)
     origin = chance[: 2 * iterations].reshape(-1, 2) * size
     chance = chance[2 * iterations :].reshape(-1, 2, 2)
     disc = reach + chance[:, 0] * (size / cells - 2 * reach)
-    middle = reach + chance[:, 1] * (sketch - 2 * reach) - 0.5
+    sheet = (draws.uniform(seed, 2, index=np.arange(len(chance))) * len(sheets)).astype(np.int64)
+    middle = corner[sheet] + reach + chance[:, 1] * (sides[sheet] - 2 * reach) - 0.5
     return reach, cells, origin, disc, middle

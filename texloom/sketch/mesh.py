@@ -7,13 +7,13 @@ import numpy as np
 from texloom.errors import ParameterError
 from texloom.sketch.disks import refined
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.patch import Patch, seamless_patch
+from texloom.sketch.patch import Patch, Sketches, seamless_patch
 from texloom.sketch.tiling import Tiling, on_plane, tile
 
 
 @dataclass(frozen=True, kw_only=True)
 class TextureMesh:
-    """How a sketch becomes a texture mesh, in three stages: patch, tiling, refinement.
+    """How a sketch, or several, become a texture mesh, in three stages: patch, tiling, refinement.
 
     Each can be run alone when what it depends on has changed: the patch on the sketch, the tiling on size, scale and
     tileable, the refinement on radius, iterations and strength.
@@ -36,12 +36,12 @@ class TextureMesh:
         if not 0 <= self.strength <= 1:
             raise ParameterError(f"strength {self.strength:g}: it must be between 0 and 1")
 
-    def run(self, sketch: CellGraph, seed: int) -> CellGraph:
+    def run(self, sketch: Sketches, seed: int) -> CellGraph:
         """All stages at once."""
         return self.refined(self.tiled(self.patch(sketch, seed)), seed)
 
-    def patch(self, sketch: CellGraph, seed: int) -> Patch:
-        """The seamless patch of a sketch."""
+    def patch(self, sketch: Sketches, seed: int) -> Patch:
+        """The seamless patch of a sketch; of several, cells as large in all, the best there is."""
         return seamless_patch(sketch, seed)
 
     def tiled(self, patch: Patch) -> Tiling:

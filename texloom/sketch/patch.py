@@ -1,9 +1,9 @@
-"""The seamless patch: the piece of a sketch that continues itself best, bent so that it does.
+"""The seamless patch: the piece of a sketch, or of several, that continues itself best, bent so that it does.
 
 Wang et al. 2014, §3.1.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -31,6 +31,8 @@ _THINNER = 0.6  # of the least round cell of the sketch, the least round of a pa
 _BLOCKS = 4  # a crop is judged by so many blocks along each side: none may be empty
 _BINS = 64
 
+Sketches = CellGraph | tuple[CellGraph, ...]
+"""One sketch, or several used together."""
 
 Seamless = tuple[CellGraph, Float64[np.ndarray, "4"], float]
 """A torus, the crop it was and the crop's cost."""
@@ -38,15 +40,16 @@ Seamless = tuple[CellGraph, Float64[np.ndarray, "4"], float]
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """A piece of a sketch on a torus, and what later stages need of the sketch."""
+    """A piece of a sketch on a torus, and what later stages need of all sketches, laid side by side on one page."""
 
     graph: CellGraph
-    crop: Float64[np.ndarray, "4"]  # top, left, bottom, right in the sketch
+    sketch: int  # which of them it was cut from
+    crop: Float64[np.ndarray, "4"]  # top, left, bottom, right in that sketch
     cost: float  # of matching itself, eq. 3; 0 for a sketch that tiles, infinite for a mirrored one
     mirrored: bool  # no piece matches itself: this one comes with its mirror images
     note: str | None  # what the user should know
-    sketch_size: tuple[float, float]
-    joints: Float64[np.ndarray, "joint 2"]  # where curves of the sketch end, by row
+    sheets: Float64[np.ndarray, "sketch 4"]  # top, left, bottom, right of every sketch on the page
+    joints: Float64[np.ndarray, "joint 2"]  # where curves end on it, by row
 
     @cached_property
     def web(self) -> Web:
@@ -58,27 +61,36 @@ class Patch:
         """Texels that no cell exceeds, up and down or across."""
         cells = self.graph.cells()
         if not len(cells):
-            return max(self.sketch_size) / 4
+            return max(self.graph.size) / 4
         ends = np.stack([self.graph.curve[:, 2], -self.graph.curve[:, 2]], axis=1).reshape(-1, 2)[cells.halfedge]
         walk = np.cumsum(ends, axis=0)
         opens = cells.start[:-1]
         return float((np.maximum.reduceat(walk, opens) - np.minimum.reduceat(walk, opens)).max())
 
 
-def seamless_patch(sketch: CellGraph, seed: int) -> Patch:
+def seamless_patch(sketches: Sketches, seed: int) -> Patch:
     """The best of many crops, seamless: eqs 4-6. A sketch that tiles is taken whole.
+
+    Of several sketches the one whose crop costs least, of those that cells cover.
 
     Crops have at least half the sketch's sides. Where different numbers of edges cross opposite sides of all of them,
     or none can be bent without edges that cross, the patch is the whole sketch with its three mirror images.
 
-    Raises: ParameterError, if the sketch has no edges, or lines so close that no patch comes of it.
+    Raises: ParameterError, if a sketch has no edges, or lines so close that no patch comes of it.
     """
-    if not len(sketch.edges):
+    every = (sketches,) if isinstance(sketches, CellGraph) else sketches
+    if not every or not all(len(sketch.edges) for sketch in every):
         raise ParameterError("the sketch has no edges: draw the borders of at least one cell")
-    graph, crop, cost = _best(reaching_border(sketch), seed) if not sketch.wrap else (sketch, _all_of(sketch), 0.0)
-    runs = chains(sketch)
-    note = _long_edges(sketch, runs) if cost > 0 else None
-    return Patch(graph, crop, cost, bool(np.isinf(cost)), note, sketch.size, _joints(sketch, runs))
+    found = [_of_one(sketch, seed) for sketch in every]
+    number = min(range(len(found)), key=lambda n: (not _covered(found[n][0]), found[n][2]))
+    graph, crop, cost = found[number]
+    runs = [chains(sketch) for sketch in every]
+    note = _long_edges(every[number], runs[number]) if cost > 0 else None
+    return Patch(graph, number, crop, cost, bool(np.isinf(cost)), note, *_page(every, runs))
+
+
+def _of_one(sketch: CellGraph, seed: int) -> Seamless:
+    return (sketch, _all_of(sketch), 0.0) if sketch.wrap else _best(reaching_border(sketch), seed)
 
 
 def _best(sketch: CellGraph, seed: int) -> Seamless:
@@ -204,12 +216,22 @@ def _all_of(sketch: CellGraph) -> Float64[np.ndarray, "4"]:
     return np.array([-0.5, -0.5, sketch.size[0] - 0.5, sketch.size[1] - 0.5])
 
 
+def _page(
+    sketches: Sequence[CellGraph], runs: Sequence[Chains]
+) -> tuple[Float64[np.ndarray, "sketch 4"], Float64[np.ndarray, "joint 2"]]:
+    """Sketches from left to right: where each lies, and the joints of all."""
+    left = np.cumsum([0.0, *(sketch.size[1] for sketch in sketches)])[:-1]
+    sheets = [_all_of(sketch) + [0, at, 0, at] for sketch, at in zip(sketches, left, strict=True)]
+    joints = [_joints(sketch, run) + [0, at] for sketch, run, at in zip(sketches, runs, left, strict=True)]
+    page = np.concatenate(joints)
+    return np.stack(sheets), page[np.argsort(page[:, 0], kind="stable")]
+
+
 def _joints(sketch: CellGraph, runs: Chains) -> Float64[np.ndarray, "joint 2"]:
     """The ends of curves, but where the drawing's border cuts them off."""
     size = np.array(sketch.size)
     beside = ((sketch.vertices < _BORDER) | (sketch.vertices > size - 1 - _BORDER)).any(axis=1)
-    joints = sketch.vertices[runs.free & ~(beside & (sketch.degree == 1))]
-    return joints[np.argsort(joints[:, 0], kind="stable")]
+    return sketch.vertices[runs.free & ~(beside & (sketch.degree == 1))]
 
 
 def _long_edges(sketch: CellGraph, runs: Chains) -> str | None:

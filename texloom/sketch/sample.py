@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from jaxtyping import Float32, Int32
+from jaxtyping import Bool, Float32, Int32
 
 from texloom.arrays import Image, in_fours
 from texloom.errors import ParameterError
@@ -82,6 +82,12 @@ class SketchSample:
     def inside(self) -> Literal["radial", "scale"]:
         """How its cells take being laid into others."""
         return best_inside(self.image, self.maps)
+
+    @property
+    def unmasked(self) -> Bool[np.ndarray, "cell"]:
+        """Whether all of a cell may be used."""
+        masked = self.maps.cell[~self.exemplar.usable]
+        return np.bincount(masked[masked >= 0], minlength=len(self.cells)) == 0
 
     @property
     def cell_size(self) -> float:

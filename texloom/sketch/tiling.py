@@ -87,7 +87,7 @@ def _named(
     return names.reshape(-1, *vertex.shape[1:]).astype(np.int32)
 
 
-def on_plane(graph: CellGraph, size: tuple[int, int], widest: float) -> CellGraph:
+def on_plane(graph: CellGraph, size: tuple[float, float], widest: float) -> CellGraph:
     """A torus cut open: all edges with an end in the texture or within ``widest`` texels of it.
 
     So cells no wider that reach into the texture are whole; beyond, edges may end anywhere.

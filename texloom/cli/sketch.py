@@ -1,0 +1,172 @@
+"""``texloom sketch``: draw the cells, get the texture."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from texloom.cli import options
+from texloom.cli.session import Session
+from texloom.errors import ParameterError
+
+INSIDE = ("radial", "scale")
+PRESET = "sketch"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SketchWish:
+    """What ``texloom sketch`` is asked for, checked; None where it is left open."""
+
+    sketches: Sequence[str]
+    samples: Sequence[Path]
+    drawings: Sequence[Path]  # of the samples' cells
+    output: Path
+    size: tuple[int, int]  # rows, columns
+    scale: float | None
+    radius: float | None
+    tileable: bool
+    kinds: Path | None
+    pattern: Path | None
+    inside: str | None
+    mesh_only: bool
+    preset: str | None
+    mask: Path | None
+    seed: int
+    sources: Path | None
+    report: Path | None
+    directx_normals: bool
+    command: str
+
+
+def sketch(
+    context: typer.Context,
+    drawing: Annotated[
+        str, typer.Argument(metavar="SKETCH", help="An SVG, a drawing, a picture with cells to detect; or random.")
+    ],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="An image, or a folder for a stack of maps; with --mesh-only an SVG.")
+    ],
+    samples: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="SAMPLE...", help="An image, or a folder of maps (basecolor.png, normal.png, ...)."),
+    ] = None,
+    further: options.Sketches = None,
+    size: Annotated[str, typer.Option(metavar="W[xH]", help="Texels.")] = "512",
+    scale: Annotated[
+        float | None,
+        typer.Option(metavar="S", help="Texels a texel of the sketch; cells as large as the sample's if not given."),
+    ] = None,
+    radius: Annotated[
+        float | None,
+        typer.Option(metavar="R", help="Texels that cells stray: 0 is regular; 0.4 of a cell if not given."),
+    ] = None,
+    tileable: Annotated[bool, typer.Option("--tileable", help="Opposite borders fit together.")] = False,
+    sample_sketch: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="FILE", help="The sample's own cells; of several, one each. Detected if not given."),
+    ] = None,
+    kinds: Annotated[
+        Path | None,
+        typer.Option(metavar="MAP", help="With --pattern: a picture of the sample, a colour a kind of cell."),
+    ] = None,
+    pattern: Annotated[
+        Path | None,
+        typer.Option(metavar="IMAGE", help="Where each kind, or of several samples each, goes: its colour."),
+    ] = None,
+    inside: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Cells are laid in radial, or by scale; by what they show.")
+    ] = None,
+    mesh_only: Annotated[bool, typer.Option("--mesh-only", help="Write the cells as SVG, without texture.")] = False,
+    preset: Annotated[str | None, typer.Option(metavar="KEY", help=f"A paper's own parameters: {PRESET}.")] = None,
+    mask: options.Mask = None,
+    seed: options.Seed = 0,
+    sources: options.SourcesOut = None,
+    report: options.Report = None,
+    directx_normals: options.DirectX = False,
+    threads: options.Threads = None,
+    as_json: options.Json = False,
+) -> None:
+    """Design a texture by its cells: those of a sketch, laid over any size, filled from the cells of a sample."""
+    wanted = SketchWish(
+        sketches=[drawing, *(further or [])],
+        samples=samples or [],
+        drawings=sample_sketch or [],
+        output=output,
+        size=options.parse_size(size),
+        scale=scale,
+        radius=radius,
+        tileable=tileable,
+        kinds=kinds,
+        pattern=pattern,
+        inside=inside,
+        mesh_only=mesh_only,
+        preset=preset,
+        mask=mask,
+        seed=seed,
+        sources=sources,
+        report=report,
+        directx_normals=directx_normals,
+        command=options.command_line(context),
+    )
+    _check(wanted)
+    options.check_mask(mask, wanted.samples)
+    options.check_report(report)
+    options.check_output(output, sources, report)
+
+    with Session(threads=threads, as_json=as_json) as session:
+        if mesh_only:
+            from texloom.cli.designing import draw as work
+        else:
+            from texloom.cli.designing import design as work
+        session.finish(work(wanted, session))
+
+
+def _check(wish: SketchWish) -> None:
+    """Raises: ParameterError, for options that do not go together."""
+    kind_options = {"kinds": wish.kinds, "pattern": wish.pattern}
+    drawn = wish.output.suffix.lower() == ".svg"
+    if drawn != wish.mesh_only:
+        name = wish.output.name
+        raise ParameterError(
+            f"--output {name}: a texture is an image, or a folder of maps; add --mesh-only for the drawing alone"
+            if drawn
+            else f"--output {name}: --mesh-only writes a drawing, name it .svg"
+        )
+    if wish.mesh_only:
+        given = {"inside": wish.inside, "preset": wish.preset, "sources": wish.sources, "report": wish.report}
+        _refuse("is for a texture, and --mesh-only makes none: leave it out", **kind_options, **given)
+    if not wish.samples:
+        if not wish.mesh_only:
+            raise ParameterError("a texture needs a sample: give one or more after the sketch, or add --mesh-only")
+        given = {"mask": wish.mask, "sample-sketch": wish.drawings[0] if wish.drawings else None}
+        _refuse("is for a sample, and there is none: give one, or leave it out", **given)
+    if wish.kinds is not None and wish.pattern is None:
+        raise ParameterError(f"--kinds {wish.kinds.name} tells cells apart for a pattern: add --pattern IMAGE")
+    if wish.kinds is not None and len(wish.samples) > 1:
+        raise ParameterError(
+            f"--kinds {wish.kinds.name} is for one sample, but of {len(wish.samples)} each is a kind: leave it out"
+        )
+    if wish.pattern is not None and wish.kinds is None and len(wish.samples) == 1:
+        raise ParameterError(
+            f"--pattern {wish.pattern.name} needs kinds of cells: add --kinds MAP, or give several samples"
+        )
+    if len(wish.drawings) not in (0, len(wish.samples)):
+        many = f"{len(wish.drawings)} drawings of cells for {len(wish.samples)} samples"
+        raise ParameterError(f"--sample-sketch {wish.drawings[0].name}: {many}: give one each, or none")
+    if wish.inside is not None:
+        options.choose("inside", wish.inside, INSIDE)
+    if wish.preset is not None:
+        options.choose("preset", wish.preset, (PRESET,))
+    if wish.scale is not None and not wish.scale > 0:
+        raise ParameterError(f"--scale {wish.scale:g}: texels of the texture in one of the sketch, above 0")
+    if wish.radius is not None and not wish.radius >= 0:
+        raise ParameterError(f"--radius {wish.radius:g}: texels, 0 or more")
+
+
+def _refuse(why: str, **given: object) -> None:
+    """Raises: ParameterError, for the first option given."""
+    for name, value in given.items():
+        if value is not None:
+            raise ParameterError(f"--{name} {value} {why}")
