@@ -7,7 +7,7 @@ from pathlib import Path
 
 from benchmarks.data import DATA
 
-PAGES = ("picture", "refine", "fill", "speed", "table1", "textons")
+PAGES = ("picture", "refine", "fill", "speed", "table1", "textons", "sweep", "sketch")
 
 
 def main() -> None:

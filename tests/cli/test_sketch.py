@@ -86,7 +86,7 @@ def test_a_texture_and_all_that_is_told(folder: Path, capsys: Captured) -> None:
     assert told["size"] == [90, 70] and Image.open(folder / "a.png").size == (90, 70)
     assert told["scale"] == pytest.approx(SQUARE / 20, rel=0.15) and told["mirrored"] is False
     assert 90 * 70 / SQUARE**2 < told["cells"] < 2 * 90 * 70 / SQUARE**2 and told["kinds"] == []  # some cut off
-    assert told["radius"] == pytest.approx(0.4 * SQUARE, rel=0.15)
+    assert told["radius"] == pytest.approx(SQUARE / 4, rel=0.15)
     assert {"read", "cells", "mesh", "maps", "start", "pixels", "write", "report"} < set(told["seconds"])
     assert Image.open(folder / "a.png").info["sketch"] == "cells.svg"
     assert "Texture mesh" in (folder / "a.html").read_text()

@@ -75,12 +75,14 @@ def test_closeness_and_orientation_follow_their_equations(graph: CellGraph):
     mask, reach = maps.away <= 0.5, maps.reach
     for row, column in ((0, 0), (31, 40), (rows - 1, 17), (12, columns - 1), (25, 60), (44, 8)):
         near = [(r, c) for r in range(row - reach, row + reach + 1) for c in range(column - reach, column + reach + 1)]
-        if not graph.wrap:
-            near = [(r, c) for r, c in near if 0 <= r < rows and 0 <= c < columns]
+        inside = np.array([graph.wrap or (0 <= r < rows and 0 <= c < columns) for r, c in near])
         gap = np.array(near) - (row, column)
-        at = tuple((np.array(near) % maps.shape).T)
+        across = np.array(near) % maps.shape
+        back = np.array(near) % (2 * np.array(maps.shape))
+        mirrored = np.minimum(back, 2 * np.array(maps.shape) - 1 - back)
+        at = tuple((across if graph.wrap else mirrored).T)
         length = np.hypot(*gap.T)
-        g = np.exp(-(length**2) / (2 * maps.blur**2))
+        g = np.exp(-(length**2) / (2 * maps.blur**2)) * inside
         np.testing.assert_allclose(maps.closeness[row, column], (g * mask[at]).sum() / g.sum(), atol=1e-6)
         w = np.divide(maps.closeness[at], length, out=np.zeros_like(length), where=length > 0)
         expected = (w[:, None] * gap).sum(axis=0) / max(w.sum(), 1e-20)

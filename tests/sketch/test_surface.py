@@ -10,6 +10,7 @@ from texloom.sketch.mesh import TextureMesh
 from texloom.sketch.random import random_cells
 from texloom.sketch.sample import SketchSample
 from texloom.sketch.surface import Designed, composed
+from texloom.sketch.tiling import on_plane
 from texloom.sources import SourceMap
 
 ROWS, COLUMNS = 40, 50
@@ -79,7 +80,9 @@ def test_sources_beyond_the_texture_continue_its_border() -> None:
 
 @pytest.fixture(scope="module")
 def designed() -> tuple[Designed, SketchSample]:
-    sample = SketchSample.of([draw("scales", size=64)], [random_cells((64.0, 64.0), cell=16.0, seed=1)])
+    sample = SketchSample.of(
+        [draw("scales", size=64)], [on_plane(random_cells((64.0, 64.0), cell=16.0, seed=1), (64, 64), 32.0)]
+    )
     design = Design(sketch=voronoi(30, seed=1), sample=sample, mesh=TextureMesh(size=(ROWS, COLUMNS), scale=0.5))
     return Designed.of(design), sample
 

@@ -60,7 +60,7 @@ def sketch(
     ] = None,
     radius: Annotated[
         float | None,
-        typer.Option(metavar="R", help="Texels that cells stray: 0 is regular; 0.4 of a cell if not given."),
+        typer.Option(metavar="R", help="Texels that cells stray: 0 is regular; a quarter of a cell if not given."),
     ] = None,
     tileable: Annotated[bool, typer.Option("--tileable", help="Opposite borders fit together.")] = False,
     sample_sketch: Annotated[

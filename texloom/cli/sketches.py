@@ -23,7 +23,7 @@ from texloom.sketch.surface import Designed
 RANDOM = "random"
 _MOST_RANDOM = 16  # cells across a random sketch at most: larger textures repeat it
 _FEWEST_RANDOM = 2
-_STRAY = 0.4  # of a cell: bricks stay bricks, repetition goes
+_STRAY = 0.25  # of a cell: bricks stay bricks, repetition goes
 _ACROSS = 10  # cells across a texture that is grown over a surface,
 _SMALLEST, _LARGEST = 256, 512  # and its sides, texels
 

@@ -153,12 +153,14 @@ class Design:
     def moved(self, vertices: Float64[np.ndarray, "vertex 2"]) -> "Design":
         """The design with the vertices of its texture mesh elsewhere; cells keep what they show.
 
-        Raises: ParameterError, if a cell would turn over.
+        Raises: ParameterError, if edges would cross or a cell turn over.
         """
         graph = self.graph.moved(vertices)
         flipped = graph.flipped(self.cells)
         if flipped.any():
             raise ParameterError(f"{np.count_nonzero(flipped)} cells would turn over: move their vertices less far")
+        if crossed := len(graph.crossings()):
+            raise ParameterError(f"{crossed} pairs of edges would cross: move their vertices less far")
         window = changed(self.maps, self.graph, graph, self.cells)
         cells = again(graph, self.cells)
         maps, start, canvas = _copy(self.maps), _copy(self.start), _copy(self.canvas)

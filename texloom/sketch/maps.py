@@ -57,7 +57,7 @@ def feature_maps(graph: CellGraph, cells: Cells, *, blur: float | None = None) -
     """The maps of a graph at its own size.
 
     ``blur`` (texels) is 0.06 of a typical cell, the square root of the median area, unless given. At a border that does
-    not wrap, neighbourhoods end.
+    not wrap, neighbourhoods of D end, and those of V see what a mirror would show, or V would lean inwards.
     """
     rows, columns = (max(int(round(side)), 1) for side in graph.size)
     if blur is None:
@@ -191,7 +191,7 @@ def _draw(maps: FeatureMaps, window: Window) -> None:
     offset = np.arange(-maps.reach, maps.reach + 1, dtype=np.float32)
     distance = np.hypot(offset[:, None], offset)
     weight = np.divide(1, distance, out=np.zeros_like(distance), where=distance > 0)
-    closeness = np.ascontiguousarray(_with_surroundings(maps, maps.closeness, window, 0))
+    closeness = np.ascontiguousarray(_with_surroundings(maps, maps.closeness, window, None))
     shape = maps.closeness[window].shape
     toward = np.empty((*shape, 2), np.float32)
     inputs = [shape[1], len(offset), weight.ravel(), closeness.ravel()]
@@ -200,13 +200,17 @@ def _draw(maps: FeatureMaps, window: Window) -> None:
 
 
 def _with_surroundings(
-    maps: FeatureMaps, values: Float32[np.ndarray, "row column"], window: Window, beyond: float
+    maps: FeatureMaps, values: Float32[np.ndarray, "row column"], window: Window, beyond: float | None
 ) -> Float32[np.ndarray, "more_rows more_columns"]:
-    """The values of a window and of half a neighbourhood around it, beyond a border those across it or a constant."""
+    """The values of a window and of half a neighbourhood around it.
+
+    Beyond a border those across it or, where nothing wraps, ``beyond``; None: a mirror's.
+    """
     for axis, (span, side) in enumerate(zip(window, values.shape, strict=True)):
         index = np.arange(span.start - maps.reach, span.stop + maps.reach)
         outside = (index < 0) | (index >= side)
-        values = values.take(index % side, axis)
-        if not maps.wrap:
+        mirrored = np.minimum(index % (2 * side), 2 * side - 1 - index % (2 * side))
+        values = values.take(index % side if maps.wrap else mirrored, axis)
+        if not maps.wrap and beyond is not None:
             values[(slice(None),) * axis + (outside,)] = beyond
     return values

@@ -32,8 +32,8 @@ class PixelSynthesis:
     """Every texel near a line takes the texel whose neighbourhood fits its own best, in ``passes``.
 
     Candidates are what the texels around continue and ``alike`` texels most like the own one; near lines only what lies
-    near lines in the sample, elsewhere what lies in cells of the same kind. With ``turned`` alike texels come turned as
-    their line runs against this one; without, as they lie.
+    near lines in the sample, elsewhere what lies in cells of the same kind. With ``turned`` texels near lines
+    begin, and alike texels come, turned as their line runs against this one; without, as they lie.
     """
 
     passes: int = 1
@@ -82,6 +82,10 @@ class PixelSynthesis:
         inside = sites.ravel()
         canvas.position[inside] = start.position[window].reshape(-1, 2)
         canvas.turn[inside] = start.turn[window].ravel()
+        if self.passes and guide.axis is not None:
+            near = inside[maps.closeness[window].ravel() > 0]
+            row, column = np.rint(canvas.position[near]).astype(np.int32).T
+            canvas.turn[near] = guide.axis[row, column] - _angles(maps).ravel()[near]
         canvas.look(guide.image, inside)
         chosen = sites[maps.away[window] <= maps.reach + _BESIDE]
         around = grid.neighbourhoods(chosen, self.window // 2)

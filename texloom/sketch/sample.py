@@ -48,7 +48,7 @@ class SketchSample:
         ``colours`` (stored values in [0, 1], stretched over the one sample) tell kinds apart.
 
         Raises: ExemplarError, if no cells are found; ParameterError, for colours over several samples, or graphs that
-        are not as many.
+        are not as many or lie on a torus.
         """
         if graphs and len(graphs) != len(exemplars):
             raise ParameterError(f"{len(graphs)} cell meshes for {len(exemplars)} samples: give one each, or none")
@@ -57,10 +57,13 @@ class SketchSample:
         drawn = [graph or detect(one) for one, graph in zip(exemplars, graphs or [None] * len(exemplars), strict=True)]
         joined = join(exemplars)
         size = (float(joined.exemplar.shape[0]), float(joined.exemplar.shape[1]))
+        if any(graph.wrap for graph in drawn):
+            raise ParameterError("a sample's cells lie in its picture, these go around a torus: cut them to it first")
         drawn = [one.resized((float(p.rows), float(p.columns))) for one, p in zip(drawn, joined.parts, strict=True)]
         graph, owner = _together(drawn, [(part.row, part.column) for part in joined.parts], size)
         cells = graph.cells()
         maps = feature_maps(graph, cells)
+        maps.closeness[~joined.exemplar.usable] = 0  # no texel is to begin there
         if colours is not None:
             kinds = kinds_of(maps.cell, colours, len(cells))
         else:
@@ -110,5 +113,5 @@ def _together(
 def _palette(count: int) -> Float32[np.ndarray, "kind 3"]:
     """A colour a sample, as far from each other as eight corners of the cube and their middles allow."""
     corners = np.array([[(n >> bit) & 1 for bit in (2, 1, 0)] for n in (0, 4, 2, 1, 6, 5, 3, 7)], np.float32)
-    more = [corners * np.float32(0.5**level) for level in range(1 + (count - 1) // len(corners))]
-    return np.concatenate(more)[:count]
+    darker = [corners[1:] * np.float32(0.5**level) for level in range(1, 2 + count // len(corners[1:]))]
+    return np.concatenate([corners, *darker])[:count]
