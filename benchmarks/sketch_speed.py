@@ -1,6 +1,7 @@
 """Milliseconds of the sketch method, stage by stage, on one thread and on two."""
 
 from dataclasses import replace
+from itertools import count, islice
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from benchmarks import machine
 from benchmarks.clock import best, once
 from benchmarks.sketch_scenes import PAIRS, Rows, design_of, load_sample, load_sketch, shown
+from texloom.errors import ParameterError
 from texloom.kernels import launch
 from texloom.sketch.design import Design
 
@@ -79,16 +81,22 @@ def _timed(design: Design) -> dict[str, float]:
             spent[stage] = once(lambda made=made, fresh=fresh: [getattr(fresh, name) for name in made])[0]
         spent["picture"] = once(lambda fresh=fresh: shown(fresh))[0]
         runs.append(spent | {"all": sum(spent.values())})
-    moves = [_moved(fresh, number) for number in range(_MOVES)]
+    moves = list(islice(filter(None, (_moved(fresh, number) for number in count())), _MOVES))
     least = {stage: min(run[stage] for run in runs[1:]) for stage in runs[0]}
     return {stage: round(1e3 * seconds, 1) for stage, seconds in (least | {"moved": float(np.median(moves))}).items()}
 
 
-def _moved(design: Design, number: int) -> float:
-    """Seconds until a vertex near the middle of the texture lies elsewhere, picture included; the least of three."""
+def _moved(design: Design, number: int) -> float | None:
+    """Seconds until a vertex near the middle of the texture lies elsewhere, picture included; the least of three.
+
+    None, where so far a move would make edges cross.
+    """
     graph = design.graph
     away = np.hypot(*(graph.vertices - np.array(design.mesh.size) / 2).T)
     away[graph.degree < 3] = np.inf
     vertices = graph.vertices.copy()
     vertices[np.argsort(away)[number]] += _FAR * design.sample.cell_size
-    return best(lambda: shown(design.moved(vertices)), 3)[0]
+    try:
+        return best(lambda: shown(design.moved(vertices)), 3)[0]
+    except ParameterError:
+        return None

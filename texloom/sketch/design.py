@@ -159,7 +159,8 @@ class Design:
         flipped = graph.flipped(self.cells)
         if flipped.any():
             raise ParameterError(f"{np.count_nonzero(flipped)} cells would turn over: move their vertices less far")
-        if crossed := len(graph.crossings()):
+        crossed = _newly_crossed(self.graph, graph)
+        if crossed:
             raise ParameterError(f"{crossed} pairs of edges would cross: move their vertices less far")
         window = changed(self.maps, self.graph, graph, self.cells)
         cells = again(graph, self.cells)
@@ -173,6 +174,23 @@ class Design:
         made = {"graph": graph, "cells": cells, "maps": maps, "shapes": shapes, "start": start, "canvas": canvas}
         design.__dict__.update({stage: made.get(stage, getattr(self, stage)) for stage in _READS})
         return design
+
+
+def _newly_crossed(before: CellGraph, after: CellGraph) -> int:
+    """Pairs of edges that cross only after a move; of those around what moved, for no others can."""
+    moved = (before.curves != after.curves).any(axis=(1, 2))
+    if not moved.any():
+        return 0
+    low, high = after.curves.min(axis=1), after.curves.max(axis=1)
+    first, last = low[moved].min(axis=0), high[moved].max(axis=0)
+    near = ((high >= first) & (low <= last)).all(axis=1)
+    if after.wrap and ((first < 0) | (last > after.size)).any():
+        near[:] = True
+    met = [
+        {tuple(pair) for pair in replace(graph, edges=graph.edges[near], curve=graph.curve[near]).crossings().tolist()}
+        for graph in (before, after)
+    ]
+    return len(met[1] - met[0])
 
 
 def _copy(arrays: Any) -> Any:
