@@ -48,6 +48,16 @@ def test_few_different_vectors_make_few_clusters():
     assert len(settle(vectors[:1].repeat(100, axis=0), 10, kept=0.99).centres) == 1
 
 
+def test_rounding_makes_no_clusters():
+    """Five vectors, each many times over and a last bit more or less."""
+    five = RNG.standard_normal((5, 8)).astype(np.float32)
+    which = np.arange(2000) % 5
+    vectors = five[which] * (1 + RNG.integers(-1, 2, (2000, 1)) * np.float32(2**-23)).astype(np.float32)
+    found = settle(vectors, 20, kept=1.0)
+    assert len(found.centres) == 5
+    np.testing.assert_array_equal(found.label, found.label[:5][which])
+
+
 def test_threads_and_seed():
     vectors = RNG.standard_normal((20000, 6)).astype(np.float32)
     found = []

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float32, Int32
 
 from texloom import draws
-from texloom.exemplar.blas import over_blocks
+from texloom.exemplar.blas import over_blocks, single_threaded
 from texloom.progress import Report, silent
 from texloom.search.exhaustive import ExhaustiveIndex
 from texloom.search.matching import Vectors, squared_distance
@@ -61,7 +61,7 @@ def settle(
     if len(vectors) > _FIRST * count:
         few = np.sort(draws.permutation(seed, _PICK, count=len(vectors))[: _FIRST * count])
         centres = lloyd(vectors[few], centres, kept=kept, passes=passes).centres
-    return lloyd(vectors, centres, kept=kept, passes=passes, report=report).filled
+    return _apart(lloyd(vectors, centres, kept=kept, passes=passes, report=report).filled)
 
 
 def nearest_centre(vectors: Vectors, centres: Centres) -> Labels:
@@ -135,6 +135,18 @@ def _table(centres: Centres) -> Float32[np.ndarray, "dim_and_bias centre"]:
     table[dim] = -np.inf
     table[dim, :count] = -np.einsum("ij,ij->i", centres, centres)
     return table
+
+
+def _apart(found: Clustering) -> Clustering:
+    """Centres that only rounding tells apart made one, the first: else rounding would tell equal vectors apart too."""
+    from scipy.sparse.csgraph import connected_components
+
+    length = np.einsum("ij,ij->i", found.centres, found.centres)
+    with single_threaded():
+        squared = length[:, None] + length - 2 * found.centres @ found.centres.T
+    _, group = connected_components(squared < _ROUNDING * length.max(), directed=False)
+    first = np.unique(group, return_index=True)[1]
+    return Clustering(found.centres[first], group[found.label].astype(np.int32), found.passes, found.kept)
 
 
 def _random(vectors: Vectors, count: int, seed: int) -> Centres:
