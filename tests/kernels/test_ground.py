@@ -4,20 +4,19 @@ import numpy as np
 import warp as wp
 
 from tests.meshes import as_mesh, cylinder, flat_square, sphere, torus
+from texloom.kernels.ground import Ground as GroundStruct
 from texloom.kernels.ground import slide, walk
 from texloom.kernels.launch import launch
 from texloom.kernels.points import settle
 from texloom.mesh.mesh import Mesh
 from texloom.mesh.query import closest_points
-from texloom.points.ground import Ground
+from texloom.points.ground import Ground, bare_ground
 
 
 @wp.kernel(enable_backward=False)
 def walk_each(
     start: int,
-    vertex: wp.array(dtype=wp.vec3d),
-    corner: wp.array(dtype=int),
-    twin: wp.array(dtype=int),
+    ground: GroundStruct,
     way: wp.array(dtype=wp.vec3d),
     length: wp.float64,
     face: wp.array(dtype=int),
@@ -25,7 +24,7 @@ def walk_each(
     whole: wp.array(dtype=int),
 ):
     i = start + wp.tid()
-    f, b, went = walk(vertex, corner, twin, face[i], place[i], way[i], length)
+    f, b, went = walk(ground, face[i], place[i], way[i], length)
     face[i] = f
     place[i] = b
     whole[i] = int(went)
@@ -34,16 +33,13 @@ def walk_each(
 @wp.kernel(enable_backward=False)
 def slide_each(
     start: int,
-    vertex: wp.array(dtype=wp.vec3d),
-    corner: wp.array(dtype=int),
-    following: wp.array(dtype=int),
-    leading: wp.array(dtype=int),
+    ground: GroundStruct,
     length: wp.array(dtype=wp.float64),
     halfedge: wp.array(dtype=int),
     share: wp.array(dtype=wp.float64),
 ):
     i = start + wp.tid()
-    h, s = slide(vertex, corner, following, leading, halfedge[i], share[i], length[i])
+    h, s = slide(ground, halfedge[i], share[i], length[i])
     halfedge[i] = h
     share[i] = s
 
@@ -51,7 +47,7 @@ def slide_each(
 def walked(mesh: Mesh, way: np.ndarray, length: float, face: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, ...]:
     """Where walks end, in space and on the mesh."""
     face, place, whole = face.copy(), place.copy(), np.zeros(len(face), np.int32)
-    inputs = [mesh.vertices, mesh.faces.reshape(-1), mesh.twins, way, length]
+    inputs = [bare_ground(mesh.vertices, mesh.faces, mesh.twins), way, length]
     launch(walk_each, len(face), inputs=inputs, outputs=[face, place, whole])
     return np.einsum("pc,pcx->px", place, mesh.vertices[mesh.faces[face]]), face, place, whole
 
@@ -124,7 +120,7 @@ def test_descending_finds_the_closest_place() -> None:
     wanted *= 1.3 / np.linalg.norm(wanted, axis=1, keepdims=True)
     near, _ = closest_points(mesh, wanted + 0.3)
     face, place = np.empty(200, np.int32), np.empty((200, 3))
-    inputs = [mesh.vertices, mesh.faces.reshape(-1), mesh.twins, wanted, near]
+    inputs = [bare_ground(mesh.vertices, mesh.faces, mesh.twins), wanted, near]
     launch(settle, 200, inputs=inputs, outputs=[face, place])
     found = np.einsum("pc,pcx->px", place, mesh.vertices[mesh.faces[face]])
     exact_face, exact = closest_points(mesh, wanted)
@@ -142,7 +138,7 @@ def test_descending_stays_on_its_sheet() -> None:
     )
     face, place = np.empty(1, np.int32), np.empty((1, 3))
     wanted = np.array([[0.9, 0.8, 0.09]])
-    inputs = [sheets.vertices, sheets.faces.reshape(-1), sheets.twins, wanted, np.zeros(1, np.int32)]
+    inputs = [bare_ground(sheets.vertices, sheets.faces, sheets.twins), wanted, np.zeros(1, np.int32)]
     launch(settle, 1, inputs=inputs, outputs=[face, place])
     found = np.einsum("pc,pcx->px", place, sheets.vertices[sheets.faces[face]])
     np.testing.assert_allclose(found, [[0.9, 0.8, 0.0]], atol=1e-12)
@@ -151,12 +147,10 @@ def test_descending_stays_on_its_sheet() -> None:
 def test_sliding_goes_along_the_rim() -> None:
     """Around a square of side 1 from the middle of its first edge, forth and back."""
     ground = Ground(flat_square(4), np.ones(25))
-    following, leading = ground.rim
     first = int(np.flatnonzero((ground.mesh.twins < 0) & (ground.mesh.faces.reshape(-1) == 0))[0])
     lengths = np.array([0.0, 0.1, 1.0, 4.0, -0.2, -4.0, 0.875])
     halfedge, share = np.full(7, first, np.int32), np.full(7, 0.5)
-    inputs = [ground.mesh.vertices, ground.mesh.faces.reshape(-1), following, leading, lengths]
-    launch(slide_each, 7, inputs=inputs, outputs=[halfedge, share])
+    launch(slide_each, 7, inputs=[ground.arrays, lengths], outputs=[halfedge, share])
     corners = ground.mesh.faces.reshape(-1)
     heads = ground.mesh.faces[:, [1, 2, 0]].reshape(-1)
     tail, head = ground.mesh.vertices[corners[halfedge]], ground.mesh.vertices[heads[halfedge]]

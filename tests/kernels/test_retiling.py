@@ -19,8 +19,10 @@ def splits(edge: int, at: tuple[float, float, float], *, anyhow: bool) -> int:
     twins = np.concatenate([Mesh(DIAMOND, FACES).twins, np.full(6, -1, np.int32)])
     first = np.append(any_halfedge(FACES, 4), np.int32(-1))
     normals, rim, count = np.tile([0.0, 0.0, 1.0], (5, 1)), np.ones(5, np.int32), np.zeros(2, np.int32)
-    inputs = [np.array([edge], np.int32), 1, 4, 2, anyhow, points, normals, np.ones(5), 0.0, rim]
-    launch(split_edges, 1, inputs=inputs, outputs=[np.empty(4096, np.int32), tails, twins, first, count])
+    places = {"at": points, "normal": normals, "scale": np.ones(5)}
+    net = {"tail": tails, "twin": twins, "first": first, "rim": rim}
+    inputs = [np.array([edge], np.int32), 1, 4, 2, anyhow, places, 0.0]
+    launch(split_edges, 1, inputs=inputs, outputs=[np.empty(4096, np.int32), net, count])
     return int(count[0])
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import igl
 import numpy as np
 import pytest
 from scipy.spatial import KDTree
@@ -141,13 +142,17 @@ def test_points_of_a_boundary_lie_on_it(made: Hierarchy) -> None:
         assert on_rim[level.mesh.boundary_vertices].all()
 
 
-def test_places_on_the_coarser_level_are_near(made: Hierarchy) -> None:
+def test_places_on_the_coarser_level_are_the_nearest(made: Hierarchy) -> None:
+    """Found by coming ever nearer, so a fold of the coarse mesh may stop it a little early."""
     for coarse, fine in zip(made.levels, made.levels[1:], strict=False):
         assert fine.on_coarser is not None
         face, barycentric = fine.on_coarser
         places = np.einsum("pc,pcx->px", barycentric, coarse.position[coarse.mesh.faces[face]])
         np.testing.assert_array_equal(places[: coarse.count], coarse.position)
-        assert np.linalg.norm(places - fine.position, axis=1).max() < 0.6 * coarse.spacing
+        faces = coarse.mesh.faces.astype(np.int64)
+        nearest = np.sqrt(igl.point_mesh_squared_distance(fine.position, coarse.position, faces)[0])
+        away = np.linalg.norm(places - fine.position, axis=1)
+        assert (away <= nearest + 0.05 * coarse.spacing).all()
     assert made.levels[0].on_coarser is None
 
 

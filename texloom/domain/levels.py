@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float32, Float64, Int32
+from jaxtyping import Float64, Int32
 
+from texloom.domain.neighbourhoods import Beside
 from texloom.domain.surface import Surface
 from texloom.errors import ParameterError
 from texloom.field.direction import from_vectors
@@ -16,19 +17,6 @@ from texloom.progress import Report, silent
 
 _DENSITY = 2 / np.sqrt(3)  # points a square texel, in a triangular lattice one texel apart
 _FEWEST = 64  # points of the coarsest level
-
-
-@dataclass(frozen=True, eq=False)
-class Beside:
-    """For each of ``n`` places the site of a domain nearest to it, and how it lies from that.
-
-    ``offset`` is [row, column] texels of that domain in the site's frame; ``turn`` the angle by which the site's
-    frame is turned against the place's, as the field counts: a multiple of 2π/order.
-    """
-
-    site: Int32[np.ndarray, "n"]
-    offset: Float32[np.ndarray, "n 2"]
-    turn: Float32[np.ndarray, "n"]
 
 
 @dataclass(frozen=True, eq=False)

@@ -38,6 +38,19 @@ def as_stencils(around: Neighbourhoods) -> Stencils:
     return Stencils(around.sites[:, :, None], None, around.offset)
 
 
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """For each of ``n`` places the site of a domain nearest to it, and how it lies from that.
+
+    ``offset`` is [row, column] texels of that domain in the site's frame; ``turn`` the angle by which the site's
+    frame is turned against the place's, as the field counts: a multiple of 2π/order.
+    """
+
+    site: Int32[np.ndarray, "n"]
+    offset: Float32[np.ndarray, "n 2"]
+    turn: Float32[np.ndarray, "n"]
+
+
 NEAR = 3
 """Texels within which a neighbourhood holds every site; and where frames turn, its greatest reach."""
 

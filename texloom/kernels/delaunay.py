@@ -4,8 +4,8 @@
 
 import warp as wp
 
-from texloom.kernels.ground import after, before
-from texloom.kernels.halfedges import MOST_AROUND, are_joined, fan_start, flip, next_around
+from texloom.kernels.ground import Places, after, before
+from texloom.kernels.halfedges import MOST_AROUND, Net, are_joined, fan_start, flip, next_around
 
 WELL_LAID = wp.constant(wp.float64(0.3))  # least cosine between a face and the ground at its corners to be trusted
 LEAST_GAIN = wp.constant(wp.float64(1.0e-4))  # sine of the angle two opposite corners must exceed π by
@@ -13,8 +13,12 @@ FLIPS_A_STACK = wp.constant(64)  # for each entry at the start: an end where rou
 
 
 @wp.func
-def opposite(p: wp.vec3d, m: wp.vec3d, q: wp.vec3d, n: wp.vec3d):
-    """Cosine and sine of the corner between two sides of a triangle in space times normals."""
+def corner_of(places: Places, bend: wp.float64, c: int, a: int, b: int):
+    """Cosine and sine of the corner at c of a triangle in space times normals, these ``bend`` times as long."""
+    p = places.at[a] - places.at[c]
+    m = bend * (places.normal[a] - places.normal[c])
+    q = places.at[b] - places.at[c]
+    n = bend * (places.normal[b] - places.normal[c])
     along = wp.dot(p, q) + wp.dot(m, n)
     squares = (wp.length_sq(p) + wp.length_sq(m)) * (wp.length_sq(q) + wp.length_sq(n))
     size = wp.sqrt(wp.max(squares, wp.float64(1.0e-300)))
@@ -22,71 +26,46 @@ def opposite(p: wp.vec3d, m: wp.vec3d, q: wp.vec3d, n: wp.vec3d):
 
 
 @wp.func
-def excess(
-    at: wp.array(dtype=wp.vec3d), normal: wp.array(dtype=wp.vec3d), bend: wp.float64, a: int, b: int, c: int, d: int
-) -> wp.float64:
+def excess(places: Places, bend: wp.float64, a: int, b: int, c: int, d: int) -> wp.float64:
     """Sine of what the corners at c and d, opposite edge a b, exceed π by: above 0 the edge is not Delaunay.
 
-    Normals count as ``bend`` times their difference: the two sides of a sheet are far from each other.
+    So the two sides of a sheet are far from each other.
     """
-    c_cos, c_sin = opposite(
-        at[a] - at[c], bend * (normal[a] - normal[c]), at[b] - at[c], bend * (normal[b] - normal[c])
-    )
-    d_cos, d_sin = opposite(
-        at[a] - at[d], bend * (normal[a] - normal[d]), at[b] - at[d], bend * (normal[b] - normal[d])
-    )
+    c_cos, c_sin = corner_of(places, bend, c, a, b)
+    d_cos, d_sin = corner_of(places, bend, d, a, b)
     return -(c_sin * d_cos + c_cos * d_sin)
 
 
 @wp.func
-def facing(at: wp.array(dtype=wp.vec3d), normal: wp.array(dtype=wp.vec3d), a: int, b: int, c: int) -> wp.float64:
+def facing(places: Places, a: int, b: int, c: int) -> wp.float64:
     """Cosine between a triangle's normal and those of the ground at its corners, less where these differ."""
-    across = wp.normalize(wp.cross(at[b] - at[a], at[c] - at[a]))
-    return wp.dot(across, normal[a] + normal[b] + normal[c]) / wp.float64(3.0)
+    across = wp.normalize(wp.cross(places.at[b] - places.at[a], places.at[c] - places.at[a]))
+    return wp.dot(across, places.normal[a] + places.normal[b] + places.normal[c]) / wp.float64(3.0)
 
 
 @wp.func
-def should_flip(
-    tail: wp.array(dtype=int),
-    twin: wp.array(dtype=int),
-    at: wp.array(dtype=wp.vec3d),
-    normal: wp.array(dtype=wp.vec3d),
-    scale: wp.array(dtype=wp.float64),
-    bend: wp.float64,
-    h: int,
-) -> int:
+def should_flip(net: Net, places: Places, bend: wp.float64, h: int) -> int:
     """Whether the other diagonal is more nearly Delaunay and its faces lie on the ground as well as these."""
-    t = twin[h]
-    if t < 0 or tail[h] < 0:
+    t = net.twin[h]
+    if t < 0 or net.tail[h] < 0:
         return 0
-    a = tail[h]
-    b = tail[t]
-    c = tail[before(h)]
-    d = tail[before(t)]
-    local = bend * wp.float64(0.5) * (scale[a] + scale[b])
-    now = excess(at, normal, local, a, b, c, d)
-    if now < LEAST_GAIN or excess(at, normal, local, c, d, a, b) > now:
+    a = net.tail[h]
+    b = net.tail[t]
+    c = net.tail[before(h)]
+    d = net.tail[before(t)]
+    local = bend * wp.float64(0.5) * (places.scale[a] + places.scale[b])
+    now = excess(places, local, a, b, c, d)
+    if now < LEAST_GAIN or excess(places, local, c, d, a, b) > now:
         return 0
-    before_ = wp.min(facing(at, normal, a, b, c), facing(at, normal, b, a, d))
-    then = wp.min(facing(at, normal, a, d, c), facing(at, normal, b, c, d))
+    before_ = wp.min(facing(places, a, b, c), facing(places, b, a, d))
+    then = wp.min(facing(places, a, d, c), facing(places, b, c, d))
     if then < WELL_LAID and then < before_:
         return 0
     return 1
 
 
 @wp.func
-def flip_around(
-    tail: wp.array(dtype=int),
-    twin: wp.array(dtype=int),
-    first: wp.array(dtype=int),
-    rim: wp.array(dtype=int),
-    at: wp.array(dtype=wp.vec3d),
-    normal: wp.array(dtype=wp.vec3d),
-    scale: wp.array(dtype=wp.float64),
-    bend: wp.float64,
-    stack: wp.array(dtype=int),
-    height: int,
-) -> int:
+def flip_around(net: Net, places: Places, bend: wp.float64, stack: wp.array(dtype=int), height: int) -> int:
     """Lawson's flips: edges on the stack, then those around each that was flipped. Returns how many were."""
     top = int(height)
     flips = int(0)
@@ -94,12 +73,12 @@ def flip_around(
     while top > 0 and flips < most:
         top = top - 1
         h = stack[top]
-        if should_flip(tail, twin, at, normal, scale, bend, h) == 1:
-            c = tail[before(h)]
-            d = tail[before(twin[h])]
-            if c != d and are_joined(tail, twin, fan_start(twin, first[c], rim[c]), d) == 0:
-                t = twin[h]
-                flip(tail, twin, first, h)
+        if should_flip(net, places, bend, h) == 1:
+            c = net.tail[before(h)]
+            d = net.tail[before(net.twin[h])]
+            if c != d and are_joined(net, fan_start(net, c), d) == 0:
+                t = net.twin[h]
+                flip(net, h)
                 flips = flips + 1
                 if top + 4 < stack.shape[0]:
                     stack[top] = after(h)
@@ -111,9 +90,7 @@ def flip_around(
 
 
 @wp.func
-def push_around(
-    tail: wp.array(dtype=int), twin: wp.array(dtype=int), start: int, stack: wp.array(dtype=int), height: int
-) -> int:
+def push_around(net: Net, start: int, stack: wp.array(dtype=int), height: int) -> int:
     """Put the edges from a vertex, and those across, on the stack; returns its height."""
     top = int(height)
     h = int(start)
@@ -122,7 +99,7 @@ def push_around(
             stack[top] = h
             stack[top + 1] = after(h)
             top = top + 2
-        h = next_around(twin, h, start)
+        h = next_around(net, h, start)
         if h < 0:
             break
     return top

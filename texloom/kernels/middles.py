@@ -1,7 +1,4 @@
-"""Middles of edges of a triangulation on the ground, around the borders of thin sheets too.
-
-Arrays of the triangulation are those of ``halfedges``, arrays of the ground and of places on it those of ``ground``.
-"""
+"""Middles of edges of a triangulation on the ground, around the borders of thin sheets too."""
 
 # ruff: noqa: UP018 (in a kernel int(0) declares a variable that a loop may change, 0 a constant)
 
@@ -10,8 +7,21 @@ import math
 import warp as wp
 
 from texloom.kernels.frames import between
-from texloom.kernels.ground import after, before, descend, place_at, slide, walk
-from texloom.kernels.points import HALF, normal_at, scale_at
+from texloom.kernels.ground import (
+    Ground,
+    Places,
+    after,
+    before,
+    descend,
+    length_of,
+    normal_at,
+    place_at,
+    put,
+    slide,
+    walk,
+)
+from texloom.kernels.halfedges import Net
+from texloom.kernels.points import HALF
 
 PARTED = wp.constant(wp.float64(0.3))  # cosine between the normals of an edge's ends, below which it may cut a ridge
 WAYS = wp.constant(16)  # tried around the border of a sheet, each at so many lengths
@@ -22,134 +32,97 @@ SAME = wp.constant(wp.float64(1.0e-6))  # of that side: places so near are one
 
 
 @wp.func
-def side_of(tail: wp.array(dtype=int), at: wp.array(dtype=wp.vec3d), h: int, t: int) -> wp.float64:
+def side_of(net: Net, places: Places, h: int, t: int) -> wp.float64:
     """The longest side of the two faces at an edge."""
     size = wp.float64(0.0)
     for k in range(2):
         g = wp.where(k == 0, h, t)
-        a = at[tail[g]]
-        b = at[tail[after(g)]]
-        c = at[tail[before(g)]]
+        a = places.at[net.tail[g]]
+        b = places.at[net.tail[after(g)]]
+        c = places.at[net.tail[before(g)]]
         size = wp.max(size, wp.max(wp.length(b - a), wp.max(wp.length(c - b), wp.length(a - c))))
     return size
 
 
 @wp.func
-def half_way(
-    vertex: wp.array(dtype=wp.vec3d),
-    corner: wp.array(dtype=int),
-    across: wp.array(dtype=int),
-    ground_normal: wp.array(dtype=wp.vec3d),
-    face: int,
-    place: wp.vec3d,
-    n: wp.vec3d,
-    q: wp.vec3d,
-    nq: wp.vec3d,
-    size: wp.float64,
-):
-    """Half the shortest of some straight ways from a place to point q, and whether there is one.
+def half_way(ground: Ground, places: Places, p: int, q: int, size: wp.float64):
+    """Half the shortest of some straight ways from point p to q, and whether there is one.
 
     They go in all directions until they come by q, on its side of the sheet, and can go down to it.
     """
-    aside = wp.normalize(wp.cross(n, q - place_at(vertex, corner, face, place)))
+    face = places.face[p]
+    place = places.barycentric[p]
+    n = places.normal[p]
+    goal = places.at[q]
+    aside = wp.normalize(wp.cross(n, goal - place_at(ground, face, place)))
     best = wp.float64(-1.0)
     ahead = wp.vec3d()
     for trial in range(WAYS * STRIDES):
         angle = TURN * wp.float64(trial // STRIDES)
         way = wp.cos(angle) * aside + wp.sin(angle) * wp.cross(n, aside)
         length = size * STRIDE * wp.float64(trial % STRIDES + 1)
-        g, c, whole = walk(vertex, corner, across, face, place, way, length)
-        total = length + wp.length(place_at(vertex, corner, g, c) - q)
-        there = wp.dot(normal_at(ground_normal, g, c), nq) > HALF
+        g, c, whole = walk(ground, face, place, way, length)
+        total = length + wp.length(place_at(ground, g, c) - goal)
+        there = wp.dot(normal_at(ground, g, c), places.normal[q]) > HALF
         if whole and there and (best < wp.float64(0.0) or total < best):
-            g, c, _away = descend(vertex, corner, across, g, q)
-            if wp.length(place_at(vertex, corner, g, c) - q) < SAME * size:
+            g, c, _away = descend(ground, g, goal)
+            if wp.length(place_at(ground, g, c) - goal) < SAME * size:
                 best = total
                 ahead = way
-    f, b, _whole = walk(vertex, corner, across, face, place, ahead, HALF * wp.max(best, wp.float64(0.0)))
+    f, b, _whole = walk(ground, face, place, ahead, HALF * wp.max(best, wp.float64(0.0)))
     return f, b, best > wp.float64(0.0)
 
 
 @wp.kernel(enable_backward=False)
-def halve(
-    start: int,
-    vertex: wp.array(dtype=wp.vec3d),
-    corner: wp.array(dtype=int),
-    across: wp.array(dtype=int),
-    following: wp.array(dtype=int),
-    leading: wp.array(dtype=int),
-    ground_scale: wp.array(dtype=wp.float64),
-    ground_normal: wp.array(dtype=wp.vec3d),
-    tail: wp.array(dtype=int),
-    twin: wp.array(dtype=int),
-    at: wp.array(dtype=wp.vec3d),
-    normal: wp.array(dtype=wp.vec3d),
-    face: wp.array(dtype=int),
-    place: wp.array(dtype=wp.vec3d),
-    side: wp.array(dtype=int),
-    halfedge: wp.array(dtype=int),
-    middle_at: wp.array(dtype=wp.vec3d),
-    middle_scale: wp.array(dtype=wp.float64),
-    middle_normal: wp.array(dtype=wp.vec3d),
-    middle_face: wp.array(dtype=int),
-    middle_place: wp.array(dtype=wp.vec3d),
-    middle_side: wp.array(dtype=int),
-):
+def halve(start: int, ground: Ground, net: Net, places: Places, halfedge: wp.array(dtype=int), middles: Places):
     """The place of the ground in the middle of an edge of the triangulation; on the rim, half way along it."""
     i = start + wp.tid()
-    p = tail[halfedge[i]]
-    q = tail[after(halfedge[i])]
+    p = net.tail[halfedge[i]]
+    q = net.tail[after(halfedge[i])]
     f = int(0)
     e = int(-1)
     b = wp.vec3d()
-    if twin[halfedge[i]] < 0:
-        h = 3 * face[p] + side[p]
-        s = place[p][(side[p] + 1) % 3]
-        target = 3 * face[q] + side[q]
-        t = place[q][(side[q] + 1) % 3]
-        length = wp.length(vertex[corner[after(h)]] - vertex[corner[h]]) * (t - s)
+    if net.twin[halfedge[i]] < 0:
+        h = 3 * places.face[p] + places.side[p]
+        s = places.barycentric[p][(places.side[p] + 1) % 3]
+        target = 3 * places.face[q] + places.side[q]
+        t = places.barycentric[q][(places.side[q] + 1) % 3]
+        length = length_of(ground, h) * (t - s)
         if h != target or t < s:
-            length = wp.length(vertex[corner[after(h)]] - vertex[corner[h]]) * (wp.float64(1.0) - s)
-            g = following[h]
-            for _ in range(corner.shape[0]):
+            length = length_of(ground, h) * (wp.float64(1.0) - s)
+            g = ground.following[h]
+            for _ in range(ground.corner.shape[0]):
                 if g == target:
                     break
-                length = length + wp.length(vertex[corner[after(g)]] - vertex[corner[g]])
-                g = following[g]
-            length = length + wp.length(vertex[corner[after(g)]] - vertex[corner[g]]) * t
-        h, s = slide(vertex, corner, following, leading, h, s, HALF * length)
+                length = length + length_of(ground, g)
+                g = ground.following[g]
+            length = length + length_of(ground, g) * t
+        h, s = slide(ground, h, s, HALF * length)
         f = h // 3
         e = h - 3 * f
         b = between(e, s)
     else:
         # From either end half way straight on, with and without going down to the nearest place. The normal tells the
         # wrong side of a sheet; around its border the middle of the chord says nothing
-        middle = HALF * (at[p] + at[q])
-        mean = wp.normalize(normal[p] + normal[q])
-        length = HALF * wp.length(at[q] - at[p])
+        middle = HALF * (places.at[p] + places.at[q])
+        mean = wp.normalize(places.normal[p] + places.normal[q])
+        length = HALF * wp.length(places.at[q] - places.at[p])
         best = wp.float64(-1.0)
         for way in range(4):
             v = wp.where(way % 2 == 0, p, q)
-            g, c, _whole = walk(vertex, corner, across, face[v], place[v], middle - at[v], length)
+            g, c, _whole = walk(ground, places.face[v], places.barycentric[v], middle - places.at[v], length)
             if way < 2:
-                g, c, _away = descend(vertex, corner, across, g, middle)
-            n = normal_at(ground_normal, g, c)
-            cost = wp.length_sq(place_at(vertex, corner, g, c) - middle) + length * length * wp.length_sq(n - mean)
+                g, c, _away = descend(ground, g, middle)
+            n = normal_at(ground, g, c)
+            cost = wp.length_sq(place_at(ground, g, c) - middle) + length * length * wp.length_sq(n - mean)
             if best < wp.float64(0.0) or cost < best:
                 best = cost
                 f = g
                 b = c
-        if wp.dot(normal[p], normal[q]) < PARTED:
-            size = side_of(tail, at, halfedge[i], twin[halfedge[i]])
-            g, c, found = half_way(
-                vertex, corner, across, ground_normal, face[p], place[p], normal[p], at[q], normal[q], size
-            )
+        if wp.dot(places.normal[p], places.normal[q]) < PARTED:
+            size = side_of(net, places, halfedge[i], net.twin[halfedge[i]])
+            g, c, found = half_way(ground, places, p, q, size)
             if found:
                 f = g
                 b = c
-    middle_at[i] = place_at(vertex, corner, f, b)
-    middle_scale[i] = scale_at(ground_scale, corner, f, b)
-    middle_normal[i] = normal_at(ground_normal, f, b)
-    middle_face[i] = f
-    middle_place[i] = b
-    middle_side[i] = e
+    put(ground, f, b, e, i, middles)

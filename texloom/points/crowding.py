@@ -41,7 +41,7 @@ def _near_another(tiling: Tiling, distance: float) -> Int[np.ndarray, "n"]:
     near = norms(places.at[first] - places.at[second]) < distance * scale
     first, second = first[near], second[near]
     face, barycentric = np.empty(len(first), np.int32), np.empty((len(first), 3))
-    inputs = [*ground.arrays, places.at[second], places.face[first]]
+    inputs = [ground.arrays, places.at[second], places.face[first]]
     launch(settle, len(first), inputs=inputs, outputs=[face, barycentric])
     reached = ground.positions(face, barycentric) - ground.origin
     return second[norms(reached - places.at[second]) < 1e-6 * distance]

@@ -65,14 +65,12 @@ class Ground:
         return sums / np.maximum(np.sqrt(np.einsum("px,px->p", sums, sums)), 1e-300)[:, None]
 
     @cached_property
-    def arrays(self) -> list[np.ndarray]:
-        """What walking over it takes: vertices, corners, twins."""
-        return [self.vertices, self.mesh.faces.reshape(-1), self.mesh.twins]
-
-    @property
-    def all_arrays(self) -> list[np.ndarray]:
-        """The same, with the boundary, the scale and the normals."""
-        return [*self.arrays, *self.rim, self.scale, self.corner_normals.reshape(-1, 3)]
+    def arrays(self) -> dict[str, np.ndarray]:
+        """For the kernels."""
+        following, leading = self.rim
+        edges = {"following": following, "leading": leading}
+        bare = bare_ground(self.vertices, self.mesh.faces, self.mesh.twins)
+        return bare | edges | {"scale": self.scale, "normal": self.corner_normals.reshape(-1, 3)}
 
     def spacing(self, count: int) -> float:
         """The distance between ``count`` points in a triangular lattice at scale 1, by the area there is."""
@@ -85,3 +83,12 @@ class Ground:
         """Places in world units."""
         corners = self.mesh.vertices[self.mesh.faces[face]]
         return np.einsum("pc,pcx->px", barycentric, corners)
+
+
+def bare_ground(
+    vertices: Float64[np.ndarray, "vertex 3"],
+    faces: Int32[np.ndarray, "face 3"],
+    twins: Int32[np.ndarray, "halfedge"],
+) -> dict[str, np.ndarray]:
+    """For kernels that only walk over a mesh and descend on it."""
+    return {"vertex": vertices, "corner": faces.reshape(-1), "twin": twins}

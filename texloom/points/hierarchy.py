@@ -12,7 +12,7 @@ from texloom.kernels.launch import launch
 from texloom.kernels.points import settle
 from texloom.mesh.mesh import Mesh
 from texloom.mesh.split import split
-from texloom.points.ground import Ground
+from texloom.points.ground import Ground, bare_ground
 from texloom.points.levels import lay, refined
 from texloom.points.tiling import Tiling
 from texloom.progress import Report, silent
@@ -162,7 +162,8 @@ def _places_on(coarser: Level, mesh: Mesh) -> tuple[Int32[np.ndarray, "point"], 
     corner[below.faces.reshape(-1)[::-1]] = np.arange(below.faces.size, dtype=np.int32)[::-1]
     face, barycentric = np.empty(len(near), np.int32), np.empty((len(near), 3))
     origin = below.vertices.mean(axis=0)
-    inputs = [below.vertices - origin, below.faces.reshape(-1), below.twins, mesh.vertices - origin, corner[near] // 3]
+    bare = bare_ground(below.vertices - origin, below.faces, below.twins)
+    inputs = [bare, mesh.vertices - origin, corner[near] // 3]
     launch(settle, len(near), inputs=inputs, outputs=[face, barycentric])
     face[: coarser.count] = corner // 3
     barycentric[: coarser.count] = np.eye(3)[corner % 3]

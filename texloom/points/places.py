@@ -18,9 +18,9 @@ class Places:
     side: Int32[np.ndarray, "point"]  # of the face, -1 inside
 
     @property
-    def arrays(self) -> list[np.ndarray]:
-        """In the kernels' order."""
-        return [self.at, self.scale, self.normal, self.face, self.barycentric, self.side]
+    def arrays(self) -> dict[str, np.ndarray]:
+        """For the kernels, by the names above."""
+        return vars(self)
 
     @classmethod
     def empty(cls, count: int) -> "Places":
@@ -28,9 +28,14 @@ class Places:
         at, normal, barycentric = (np.empty((count, 3)) for _ in range(3))
         return cls(at, np.empty(count), normal, np.empty(count, np.int32), barycentric, np.empty(count, np.int32))
 
+    def overwrite(self, which: np.ndarray | slice, others: "Places") -> None:
+        """Put others where some of these are."""
+        for name, array in self.arrays.items():
+            array[which] = others.arrays[name]
+
     def __getitem__(self, chosen: np.ndarray) -> "Places":
-        return Places(*(array[chosen] for array in self.arrays))
+        return Places(**{name: array[chosen] for name, array in self.arrays.items()})
 
     def joined(self, more: "Places") -> "Places":
         """These, then those."""
-        return Places(*(np.concatenate(pair) for pair in zip(self.arrays, more.arrays, strict=True)))
+        return Places(**{name: np.concatenate([array, more.arrays[name]]) for name, array in self.arrays.items()})

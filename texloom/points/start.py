@@ -6,7 +6,7 @@ from jaxtyping import Float64, Int32
 from texloom.kernels.launch import launch
 from texloom.kernels.points import settle
 from texloom.mesh.refine import Refined, refine
-from texloom.points.ground import Ground
+from texloom.points.ground import Ground, bare_ground
 from texloom.points.places import Places
 from texloom.points.tiling import Tiling, any_halfedge
 
@@ -20,8 +20,7 @@ def start(ground: Ground, length: float, *, bend: float, kept: Places) -> Tiling
     mesh, places = refined.mesh, _places(ground, refined)
     rim = mesh.boundary_vertices.astype(np.int32)
     taken = _stand_ins(refined, kept, places.at)
-    for ours, theirs in zip(places.arrays, kept.arrays, strict=True):
-        ours[taken] = theirs
+    places.overwrite(taken, kept)
     rest = np.ones(len(rim), bool)
     rest[taken] = False
     order = np.concatenate([taken, np.flatnonzero(rest)])
@@ -81,6 +80,6 @@ def _containing(
     mesh = refined.mesh
     parent = np.repeat(refined.parent, 3)
     inside = np.where(parent == parent[mesh.twins], mesh.twins, -1).astype(np.int32)
-    inputs = [at, mesh.faces.reshape(-1), inside, kept.at, children]
+    inputs = [bare_ground(at, mesh.faces, inside), kept.at, children]
     launch(settle, len(face), inputs=inputs, outputs=[face, share])
     return mesh.faces[face], share

@@ -47,13 +47,9 @@ class Tiling:
         return len(self.rim)
 
     @property
-    def _shape(self) -> list[np.ndarray | float]:
-        """What flips are judged by."""
-        return [self.places.at, self.places.normal, self.places.scale, self.bend]
-
-    @property
-    def _links(self) -> list[np.ndarray]:
-        return [self.faces.reshape(-1), self.twins, self.first, self.rim]
+    def _net(self) -> dict[str, np.ndarray]:
+        """For the kernels."""
+        return {"tail": self.faces.reshape(-1), "twin": self.twins, "first": self.first, "rim": self.rim}
 
     def edges(self) -> tuple[Int32[np.ndarray, "edge"], Float64[np.ndarray, "edge"]]:
         """One halfedge of every edge (on a boundary the only one), and the edge's length over the scale there."""
@@ -86,11 +82,10 @@ class Tiling:
         halfedges = None if who is None else self._halfedges(movers)
         for _ in range(steps):
             forces = [spacing, _REACH, _GAIN, _SWING, last]
-            inputs = [*self.ground.all_arrays, *self._links, movers, *forces, *self.places.arrays]
-            launch(repel, len(movers), inputs=inputs, outputs=moved.arrays)
+            inputs = [self.ground.arrays, self._net, self.places.arrays, movers, *forces]
+            launch(repel, len(movers), inputs=inputs, outputs=[moved.arrays])
             last[:] = self.places.at[into]
-            for ours, theirs in zip(self.places.arrays, moved.arrays, strict=True):
-                ours[into] = theirs
+            self.places.overwrite(into, moved)
             self.flip(halfedges)
 
     def flip(self, halfedges: Int32[np.ndarray, "halfedge"] | None = None) -> int:
@@ -98,14 +93,13 @@ class Tiling:
         if halfedges is None:
             halfedges = np.arange(self.faces.size, dtype=np.int32)
         marked = np.empty(len(halfedges), np.uint8)
-        links = self._links
-        launch(mark_flips, len(marked), inputs=[halfedges, *links[:2], *self._shape], outputs=[marked])
+        judged = [self.places.arrays, self.bend]
+        launch(mark_flips, len(marked), inputs=[halfedges, self._net, *judged], outputs=[marked])
         wanted = halfedges[marked == 1]
         stack = np.empty(4 * len(wanted) + 4096, np.int32)
         stack[: len(wanted)] = wanted[::-1]
         flips = np.zeros(1, np.int32)
-        inputs = [len(wanted), *self._shape, links[3]]
-        launch(flip_edges, 1, inputs=inputs, outputs=[stack, *links[:3], flips])
+        launch(flip_edges, 1, inputs=[len(wanted), *judged], outputs=[stack, self._net, flips])
         return int(flips[0])
 
     def around(self, points: Int[np.ndarray, "n"], rings: int) -> Int32[np.ndarray, "more"]:
@@ -145,9 +139,8 @@ class Tiling:
     def _collapse(self, halfedges: Int32[np.ndarray, "edge"], *, most: int, longest: float, turn: float) -> int:
         """Take out points by these edges, in their order; returns how many."""
         gone = np.zeros(1, np.int32)
-        inputs = [halfedges, most, longest, turn, self.frozen, *self._shape, self.rim]
-        outputs = [np.empty(4096, np.int32), *self._links[:3], gone]
-        launch(collapse_edges, 1, inputs=inputs, outputs=outputs)
+        inputs = [halfedges, most, longest, turn, self.frozen, self.places.arrays, self.bend]
+        launch(collapse_edges, 1, inputs=inputs, outputs=[np.empty(4096, np.int32), self._net, gone])
         if gone[0]:
             self._pack()
         return int(gone[0])
@@ -155,9 +148,8 @@ class Tiling:
     def middles(self, halfedges: Int32[np.ndarray, "edge"]) -> Places:
         """The middles of edges, on the ground."""
         middles = Places.empty(len(halfedges))
-        places = [self.places.at, self.places.normal, self.places.face, self.places.barycentric, self.places.side]
-        inputs = [*self.ground.all_arrays, *self._links[:2], *places, halfedges]
-        launch(halve, len(halfedges), inputs=inputs, outputs=middles.arrays)
+        inputs = [self.ground.arrays, self._net, self.places.arrays, halfedges]
+        launch(halve, len(halfedges), inputs=inputs, outputs=[middles.arrays])
         return middles
 
     def fill_in(self, most: int, *, careful: bool = False) -> int:
@@ -183,8 +175,8 @@ class Tiling:
         count = np.zeros(2, np.int32)
         for anyhow in (False, True):
             if count[0] == 0:
-                inputs = [chosen, most, points, len(self.faces) - 2 * most, anyhow, *self._shape, self.rim]
-                launch(split_edges, 1, inputs=inputs, outputs=[np.empty(4096, np.int32), *self._links[:3], count])
+                inputs = [chosen, most, points, len(self.faces) - 2 * most, anyhow, self.places.arrays, self.bend]
+                launch(split_edges, 1, inputs=inputs, outputs=[np.empty(4096, np.int32), self._net, count])
         self._pack()
         return int(count[0])
 

@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float32, Int32
 
 from texloom.arrays import Image
 from texloom.domain.domain import Domain
-from texloom.domain.levels import Beside
+from texloom.domain.neighbourhoods import Beside
 from texloom.sources import SourceMap
 from texloom.synthesis.gaps import fill_gaps
 
