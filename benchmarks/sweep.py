@@ -3,13 +3,11 @@
 ``python -m benchmarks.sweep PART...`` measures some parts anew and leaves the others on the page as they are.
 """
 
-import argparse
-import json
 from pathlib import Path
 from typing import Any
 
-from benchmarks import report, sweep_pictures, sweep_speed
-from benchmarks.data import DATA, SEED
+from benchmarks import parts, report, sweep_pictures, sweep_speed
+from benchmarks.data import SEED
 from benchmarks.sweep_scenes import BUNNY, TEXELS
 
 NAME = "sweep"
@@ -17,34 +15,18 @@ TIMED = ("points", "stages", "processes", "fields")
 PARTS = (*TIMED, "pairs", "structure", "seam")
 
 
-def main(data: Path, parts: tuple[str, ...] = PARTS) -> None:
+def main(data: Path, chosen: tuple[str, ...] = PARTS) -> None:
     """Measure, print and write the page."""
-    numbers = _earlier()
-    for part in parts:
-        print(f"benchmarks: {NAME}, {part}", flush=True)
-        numbers[part] = getattr(sweep_speed if part in TIMED else sweep_pictures, part)(data)
-        _write({name: numbers[name] for name in PARTS if name in numbers})
 
+    def measure(part: str) -> Any:
+        return getattr(sweep_speed if part in TIMED else sweep_pictures, part)(data)
 
-def _earlier() -> dict[str, Any]:
-    """Numbers of parts measured before."""
-    path = report.RESULTS / f"{NAME}.json"
-    if not path.is_file():
-        return {}
-    read = json.loads(path.read_text(encoding="utf-8"))
-    return {name: numbers for name, numbers in read.items() if name in PARTS}
-
-
-def _write(numbers: dict[str, Any]) -> None:
-    sections = [f"Seed {SEED}. `copy` is the side in texels of the typical piece of the sample shown unbroken."]
-    for part, measured in numbers.items():
-        shown = sweep_pictures.tables(measured) if isinstance(measured, dict) else _rows(measured)
-        sections += [_INTRODUCTION[part], shown]
-    report.write(NAME, title="Sweeps over points", sections=sections, numbers=numbers)
-
-
-def _rows(rows: list[dict[str, Any]]) -> str:
-    return report.table([key.strip() for key in rows[0]], [list(row.values()) for row in rows])
+    for numbers in parts.anew(NAME, PARTS, chosen, measure):
+        sections = [f"Seed {SEED}. `copy` is the side in texels of the typical piece of the sample shown unbroken."]
+        for part, measured in numbers.items():
+            shown = sweep_pictures.tables(measured) if isinstance(measured, dict) else parts.rows(measured)
+            sections += [_INTRODUCTION[part], shown]
+        report.write(NAME, title="Sweeps over points", sections=sections, numbers=numbers)
 
 
 _INTRODUCTION = {
@@ -68,8 +50,4 @@ _INTRODUCTION = {
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.sweep", description=__doc__)
-    parser.add_argument("part", nargs="*", choices=[*PARTS, []], help="all by default")
-    parser.add_argument("--data", type=Path, default=DATA, help="folder of exemplars, stacks and meshes")
-    given = parser.parse_args()
-    main(given.data, tuple(given.part) or PARTS)
+    parts.command(NAME, PARTS, __doc__, main)

@@ -3,57 +3,36 @@
 ``python -m benchmarks.textons PART...`` measures some parts anew and leaves the others on the page as they are.
 """
 
-import argparse
-import json
 from pathlib import Path
 from typing import Any
 
-from benchmarks import many_meshes, preprocessing, quilting, report
+from benchmarks import many_meshes, parts, preprocessing, quilting, report
 from benchmarks.bunny import FACES, bunny
-from benchmarks.data import DATA, SEED
+from benchmarks.data import SEED
 
 NAME = "textons"
 PARTS = ("preprocessing", "synthesis", "threads", "growth", "edges", "many", "blending")
 MESHES = 100  # textured in one process
 
 
-def main(data: Path, parts: tuple[str, ...] = PARTS, *, meshes: int = MESHES) -> None:
+def main(data: Path, chosen: tuple[str, ...] = PARTS) -> None:
     """Measure, print and write the page."""
-    numbers: dict[str, Any] = {**_earlier(), "scale": round(quilting.scale_of(bunny(data)), 3)}
-    for part in parts:
-        print(f"benchmarks: {NAME}, {part}", flush=True)
-        numbers[part] = measure(part, data, meshes=meshes)
-    _write({name: numbers[name] for name in ("scale", *PARTS) if name in numbers})
+    scale = round(quilting.scale_of(bunny(data)), 3)
+    for numbers in parts.anew(NAME, PARTS, chosen, lambda part: measure(part, data)):
+        sections = [f"Seed {SEED}; published figures are of an Athlon at 1.3 GHz."]
+        for part, measured in numbers.items():
+            sections += [_INTRODUCTION[part].format(scale=scale), parts.rows(measured)]
+        title = "Triangle quilting with textons"
+        report.write(NAME, title=title, sections=sections, numbers={"scale": scale, **numbers})
 
 
-def measure(part: str, data: Path, *, meshes: int = MESHES) -> list[dict[str, Any]]:
+def measure(part: str, data: Path) -> list[dict[str, Any]]:
     """The rows of one part."""
     if part == "preprocessing":
         return preprocessing.preprocessing(data)
     if part == "many":
-        return many_meshes.many(data, meshes)
+        return many_meshes.many(data, MESHES)
     return many_meshes.blending(data) if part == "blending" else getattr(quilting, part)(data)
-
-
-def _earlier() -> dict[str, Any]:
-    """Numbers of parts measured before."""
-    path = report.RESULTS / f"{NAME}.json"
-    if not path.is_file():
-        return {}
-    read = json.loads(path.read_text(encoding="utf-8"))
-    return {name: rows for name, rows in read.items() if name in PARTS}
-
-
-def _write(numbers: dict[str, Any]) -> None:
-    sections = [f"Seed {SEED}; published figures are of an Athlon at 1.3 GHz."]
-    for part in PARTS:
-        if rows := numbers.get(part):
-            sections += [_INTRODUCTION[part].format(**numbers), _shown(rows)]
-    report.write(NAME, title="Triangle quilting with textons", sections=sections, numbers=numbers)
-
-
-def _shown(rows: list[dict[str, Any]]) -> str:
-    return report.table(list(rows[0]), [list(row.values()) for row in rows])
 
 
 _ROUNDS = "after 2 rounds in which the worst half is chosen anew"
@@ -88,9 +67,4 @@ _INTRODUCTION = {
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.textons", description=__doc__)
-    parser.add_argument("part", nargs="*", choices=[*PARTS, []], help="all by default")
-    parser.add_argument("--data", type=Path, default=DATA, help="folder of exemplars, stacks and meshes")
-    parser.add_argument("--meshes", type=int, default=MESHES, help="textured in one process")
-    given = parser.parse_args()
-    main(given.data, tuple(given.part) or PARTS, meshes=given.meshes)
+    parts.command(NAME, PARTS, __doc__, main)
