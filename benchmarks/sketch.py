@@ -3,13 +3,11 @@
 ``python -m benchmarks.sketch PART...`` measures some parts anew and leaves the others on the page as they are.
 """
 
-import argparse
-import json
 from pathlib import Path
 from typing import Any
 
-from benchmarks import report, sketch_pictures, sketch_speed
-from benchmarks.data import DATA, SEED
+from benchmarks import parts, report, sketch_pictures, sketch_speed
+from benchmarks.data import SEED
 from benchmarks.sketch_scenes import SIDE
 
 NAME = "sketch"
@@ -17,29 +15,17 @@ TIMED = ("preparation", "speed")
 PARTS = (*TIMED, "detail", "shapes", "files")
 
 
-def main(data: Path, parts: tuple[str, ...] = PARTS) -> None:
+def main(data: Path, chosen: tuple[str, ...] = PARTS) -> None:
     """Measure, print and write the page."""
-    numbers = _earlier()
-    for part in parts:
-        print(f"benchmarks: {NAME}, {part}", flush=True)
-        numbers[part] = getattr(sketch_speed if part in TIMED else sketch_pictures, part)(data)
-        _write({name: numbers[name] for name in PARTS if name in numbers})
 
+    def measure(part: str) -> Any:
+        return getattr(sketch_speed if part in TIMED else sketch_pictures, part)(data)
 
-def _earlier() -> dict[str, Any]:
-    """Numbers of parts measured before."""
-    path = report.RESULTS / f"{NAME}.json"
-    if not path.is_file():
-        return {}
-    read = json.loads(path.read_text(encoding="utf-8"))
-    return {name: rows for name, rows in read.items() if name in PARTS}
-
-
-def _write(numbers: dict[str, Any]) -> None:
-    sections = [f"Seed {SEED}; cells of the samples detected, cells of the texture as large as theirs."]
-    for part, rows in numbers.items():
-        sections += [_INTRODUCTION[part], report.table(list(rows[0]), [list(row.values()) for row in rows])]
-    report.write(NAME, title="Textures from mesh sketches", sections=sections, numbers=numbers)
+    for numbers in parts.anew(NAME, PARTS, chosen, measure):
+        sections = [f"Seed {SEED}; cells of the samples detected, cells of the texture as large as theirs."]
+        for part, measured in numbers.items():
+            sections += [_INTRODUCTION[part], parts.rows(measured)]
+        report.write(NAME, title="Textures from mesh sketches", sections=sections, numbers=numbers)
 
 
 _INTRODUCTION = {
@@ -60,8 +46,4 @@ _INTRODUCTION = {
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.sketch", description=__doc__)
-    parser.add_argument("part", nargs="*", choices=[*PARTS, []], help="all by default")
-    parser.add_argument("--data", type=Path, default=DATA, help="folder of exemplars and sketches")
-    given = parser.parse_args()
-    main(given.data, tuple(given.part) or PARTS)
+    parts.command(NAME, PARTS, __doc__, main)

@@ -13,9 +13,9 @@ from benchmarks.sketch_scenes import PAIRS, Picture, Rows, design_of, load_sampl
 from texloom.errors import TexloomError
 from texloom.output.image import encoded_picture
 from texloom.sketch.design import Design
-from texloom.sketch.maps import FeatureMaps
-from texloom.sketch.pixels import PixelSynthesis
-from texloom.sketch.read import read_sketch
+from texloom.sketch.filling.maps import FeatureMaps
+from texloom.sketch.filling.pixels import PixelSynthesis
+from texloom.sketch.reading.read import read_sketch
 from texloom.sketch.sample import SketchSample
 from texloom.systems import sketch as published
 

@@ -13,10 +13,10 @@ from texloom.output.gather import gather_images
 from texloom.output.image import encoded_picture
 from texloom.sketch.design import Design
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.mesh import TextureMesh
-from texloom.sketch.read import read_sketch
+from texloom.sketch.mesh.scale import cell_size
+from texloom.sketch.mesh.texture_mesh import TextureMesh
+from texloom.sketch.reading.read import read_sketch
 from texloom.sketch.sample import SketchSample
-from texloom.sketch.scale import cell_size
 
 Picture = UInt8[np.ndarray, "row column channel"]
 Rows = list[dict[str, Any]]

@@ -5,9 +5,9 @@ from jaxtyping import Float64
 
 from examples.pictures import Picture
 from texloom.io.svg import Strokes
+from texloom.sketch.filling.maps import feature_maps
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.maps import feature_maps
-from texloom.sketch.strokes import graph_of
+from texloom.sketch.reading.strokes import graph_of
 
 PAPER = (200.0, 200.0)  # texels
 STRAY = 0.4  # of a cell: how far a texture's cells may stray

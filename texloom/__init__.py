@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from texloom.search.textons import Textons as Textons
     from texloom.search.textons import learn_textons as learn_textons
     from texloom.sketch.design import Design as Design
-    from texloom.sketch.mesh import TextureMesh as TextureMesh
-    from texloom.sketch.read import read_sketch as read_sketch
+    from texloom.sketch.mesh.texture_mesh import TextureMesh as TextureMesh
+    from texloom.sketch.reading.read import read_sketch as read_sketch
     from texloom.sketch.sample import SketchSample as SketchSample
     from texloom.sources import SourceMap as SourceMap
     from texloom.synthesis.boundary import BoundarySampling as BoundarySampling
@@ -70,7 +70,7 @@ _HOMES = {
     "Surface": "domain.surface",
     "Sweep": "synthesis.sweep",
     "Textons": "search.textons",
-    "TextureMesh": "sketch.mesh",
+    "TextureMesh": "sketch.mesh.texture_mesh",
     "fill": "synthesis.fill",
     "filled_maps": "output.filled",
     "from_array": "exemplar.exemplar",
@@ -82,7 +82,7 @@ _HOMES = {
     "on_sample": "output.sample_uv",
     "read_exemplar": "io.stack",
     "read_mesh": "io.mesh",
-    "read_sketch": "sketch.read",
+    "read_sketch": "sketch.reading.read",
     "save_textons": "output.textons_file",
     "score": "metrics.score",
     "smoothest": "field.smooth",

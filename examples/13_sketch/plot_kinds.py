@@ -13,7 +13,7 @@ from examples.pictures import Picture, below, beside, of_map, shown
 from examples.sketches import STRAY, honeycomb
 from texloom.demo import draw
 from texloom.sketch.design import Design
-from texloom.sketch.mesh import TextureMesh
+from texloom.sketch.mesh.texture_mesh import TextureMesh
 from texloom.sketch.sample import SketchSample
 
 SAMPLES = ("pebbles", "scales")

@@ -12,7 +12,7 @@ from examples.pictures import Picture, below, beside, of_map, shown
 from examples.sketches import drawn, honeycomb
 from texloom.demo import draw
 from texloom.sketch.design import Design
-from texloom.sketch.mesh import TextureMesh
+from texloom.sketch.mesh.texture_mesh import TextureMesh
 from texloom.sketch.sample import SketchSample
 
 RADII = (5, 15, 25)  # texels

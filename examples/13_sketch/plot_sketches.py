@@ -10,7 +10,7 @@ from examples.pictures import Picture, below, beside, inset, of_map, shown
 from examples.sketches import STRAY, arcs, drawn, stars
 from texloom.demo import draw
 from texloom.sketch.design import Design
-from texloom.sketch.mesh import TextureMesh
+from texloom.sketch.mesh.texture_mesh import TextureMesh
 from texloom.sketch.sample import SketchSample
 
 DESIGNS = ((arcs(), "bricks", 160, 1.0), (stars(), "pebbles", 230, 0.8))  # sketch, sample, its side, scale

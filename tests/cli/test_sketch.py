@@ -17,10 +17,10 @@ from texloom.demo.write import write_obj
 from texloom.metrics.seam import seam_ratio
 from texloom.output.sketch_svg import write_sketch_svg
 from texloom.output.sources_file import load_sources
-from texloom.sketch.mesh import TextureMesh
+from texloom.sketch.mesh.shown import shown_curves
+from texloom.sketch.mesh.texture_mesh import TextureMesh
 from texloom.sketch.random import random_cells
-from texloom.sketch.read import read_sketch
-from texloom.sketch.shown import shown_curves
+from texloom.sketch.reading.read import read_sketch
 
 Captured = pytest.CaptureFixture[str]
 SQUARE, SIDE = 12, 72

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.spatial import Voronoi
 
-from texloom.sketch.cutting import cut
 from texloom.sketch.graph import CellGraph, straight
+from texloom.sketch.mesh.cutting import cut
 
 
 def voronoi(count: int, seed: int, size: tuple[float, float] = (200.0, 200.0)) -> CellGraph:

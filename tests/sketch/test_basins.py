@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from texloom.sketch.basins import basins
+from texloom.sketch.reading.basins import basins
 
 
 def wells(depths, pass_height: float) -> np.ndarray:

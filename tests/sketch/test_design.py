@@ -12,15 +12,15 @@ from tests.sketch.drawn import voronoi
 from tests.sketch.test_sample import GRAPH, picture, share_to_the_right, two_colours
 from texloom.errors import ParameterError
 from texloom.sketch.design import Design
+from texloom.sketch.filling.kinds import Deal
+from texloom.sketch.filling.maps import changed, feature_maps
+from texloom.sketch.filling.pixels import PixelSynthesis
+from texloom.sketch.filling.shapes import cell_shapes
+from texloom.sketch.filling.warp import Initialization
 from texloom.sketch.graph import straight
-from texloom.sketch.kinds import Deal
-from texloom.sketch.maps import changed, feature_maps
-from texloom.sketch.mesh import TextureMesh
-from texloom.sketch.pixels import PixelSynthesis
+from texloom.sketch.mesh.texture_mesh import TextureMesh
 from texloom.sketch.random import random_cells
 from texloom.sketch.sample import SketchSample
-from texloom.sketch.shapes import cell_shapes
-from texloom.sketch.warp import Initialization
 
 STAGES = ("patch", "tiling", "graph", "cells", "maps", "shapes", "assignment", "guide", "start", "canvas")
 MESH = TextureMesh(size=(60, 72), scale=1.2, radius=12.0)

@@ -8,8 +8,8 @@ from tests.data import DATA, needs_data
 from texloom.errors import ExemplarError
 from texloom.exemplar.exemplar import Exemplar, to_map
 from texloom.io.stack import read_exemplar
-from texloom.sketch.detect import detect
 from texloom.sketch.random import random_cells
+from texloom.sketch.reading.detect import detect
 
 
 def painted(seed: int, *, dark: bool) -> tuple[Exemplar, np.ndarray]:

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from tests.sketch.drawn import euler, voronoi, wall
 from texloom import draws
 from texloom.kernels.launch import thread_count, use
-from texloom.sketch.disks import _discs, refined
-from texloom.sketch.patch import seamless_patch
-from texloom.sketch.tiling import Tiling, tile
+from texloom.sketch.mesh.disks import _discs, refined
+from texloom.sketch.mesh.patch import seamless_patch
+from texloom.sketch.mesh.tiling import Tiling, tile
 
 
 def tiling_of(count: int, seed: int, *, size: tuple[int, int] = (160, 220), scale: float = 1.0) -> Tiling:

@@ -8,10 +8,10 @@ from scipy.spatial import cKDTree
 from tests.data import DATA, needs_data
 from texloom.errors import FileError
 from texloom.io.svg import read_svg
-from texloom.sketch.drawing import graph_of_drawing, is_drawing, read_drawing
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.read import read_sketch
-from texloom.sketch.strokes import graph_of
+from texloom.sketch.reading.drawing import graph_of_drawing, is_drawing, read_drawing
+from texloom.sketch.reading.read import read_sketch
+from texloom.sketch.reading.strokes import graph_of
 
 SKETCHES = sorted(path.stem for path in (DATA / "sketches").glob("*.svg"))
 

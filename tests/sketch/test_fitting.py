@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from texloom.sketch.bezier import points_at
-from texloom.sketch.fitting import curved, fit
-from texloom.sketch.labels import borders
-from texloom.sketch.lines import Lines, noded, tidy
+from texloom.sketch.reading.fitting import curved, fit
+from texloom.sketch.reading.labels import borders
+from texloom.sketch.reading.lines import Lines, noded, tidy
 
 
 def test_one_cubic_gives_itself_back():

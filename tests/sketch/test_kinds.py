@@ -6,11 +6,11 @@ import pytest
 from tests.sketch.drawn import voronoi
 from texloom import draws
 from texloom.errors import ExemplarError
+from texloom.sketch.filling.kinds import Deal, kinds_of, neighbours, painted
+from texloom.sketch.filling.maps import feature_maps
+from texloom.sketch.filling.shapes import cell_shapes
 from texloom.sketch.graph import straight
-from texloom.sketch.kinds import Deal, kinds_of, neighbours, painted
-from texloom.sketch.maps import feature_maps
 from texloom.sketch.random import random_cells
-from texloom.sketch.shapes import cell_shapes
 
 SAMPLE = voronoi(40, 4)
 TEXTURE = random_cells((200.0, 260.0), cell=22, seed=3)

@@ -7,9 +7,9 @@ import pytest
 
 from tests.sketch.drawn import voronoi
 from texloom.kernels.launch import thread_count, use
+from texloom.sketch.filling.maps import FeatureMaps, changed, feature_maps, redraw
+from texloom.sketch.filling.outlines import outlines
 from texloom.sketch.graph import CellGraph, straight
-from texloom.sketch.maps import FeatureMaps, changed, feature_maps, redraw
-from texloom.sketch.outlines import outlines
 from texloom.sketch.random import random_cells
 
 GRAPHS = [voronoi(30, 1, (70.0, 90.0)), random_cells((60.0, 90.0), cell=18, seed=5)]

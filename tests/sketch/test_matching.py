@@ -3,8 +3,8 @@ import pytest
 
 from tests.sketch.drawn import voronoi, wall
 from texloom.sketch.graph import CellGraph, straight
-from texloom.sketch.matching import cross_lines, edge_costs, match_crops
-from texloom.sketch.patch import random_crops
+from texloom.sketch.mesh.matching import cross_lines, edge_costs, match_crops
+from texloom.sketch.mesh.patch import random_crops
 
 INNER, OUTER = np.array([[5.0, 5.0]]), np.array([[5.0, -5.0]])
 

@@ -5,8 +5,8 @@ from tests.data import DATA, needs_data
 from tests.sketch.drawn import voronoi
 from texloom.errors import ParameterError
 from texloom.io.svg import read_svg
-from texloom.sketch.mesh import TextureMesh
-from texloom.sketch.strokes import graph_of
+from texloom.sketch.mesh.texture_mesh import TextureMesh
+from texloom.sketch.reading.strokes import graph_of
 
 
 def test_stages_run_alone_and_give_what_all_give_at_once() -> None:

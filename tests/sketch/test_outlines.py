@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tests.sketch.drawn import voronoi, wall
+from texloom.sketch.filling.outlines import outlines
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.outlines import outlines
 from texloom.sketch.random import random_cells
 
 GRAPHS = [voronoi(40, 3), random_cells((90.0, 120.0), cell=20, seed=2)]

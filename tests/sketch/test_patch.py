@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 
 from tests.sketch.drawn import euler, voronoi, wall
 from texloom.errors import ParameterError
-from texloom.sketch.cutting import cut, reaching_border
-from texloom.sketch.facets import faceted
 from texloom.sketch.graph import CellGraph, straight
-from texloom.sketch.matching import match_crops
-from texloom.sketch.patch import random_crops, seamless_patch
-from texloom.sketch.seam import mirrored, seamless
+from texloom.sketch.mesh.cutting import cut, reaching_border
+from texloom.sketch.mesh.facets import faceted
+from texloom.sketch.mesh.matching import match_crops
+from texloom.sketch.mesh.patch import random_crops, seamless_patch
+from texloom.sketch.mesh.seam import mirrored, seamless
 
 
 def length(graph: CellGraph) -> float:
@@ -84,7 +84,7 @@ def test_a_piece_and_its_mirror_images_are_seamless() -> None:
 
 
 def test_where_no_piece_matches_itself_the_patch_is_mirrored(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("texloom.sketch.patch.random_crops", lambda size, seed: np.zeros((0, 4)))
+    monkeypatch.setattr("texloom.sketch.mesh.patch.random_crops", lambda size, seed: np.zeros((0, 4)))
     vertices = np.array([[50.0, -1], [50, 60], [20, 100], [80, 100]])  # one line comes in, two go out
     sketch = straight((100, 100), vertices, np.array([[0, 1], [1, 2], [1, 3]]))
     patch = seamless_patch(sketch, 0)
@@ -92,7 +92,7 @@ def test_where_no_piece_matches_itself_the_patch_is_mirrored(monkeypatch: pytest
 
 
 def test_lines_too_close_to_be_cut_are_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("texloom.sketch.patch._bent", lambda sketch, seed: iter(()))
+    monkeypatch.setattr("texloom.sketch.mesh.patch._bent", lambda sketch, seed: iter(()))
     sketch = straight((60, 60), np.array([[2.0, 30], [55, 30], [2, 31], [55, 29]]), np.array([[0, 1], [2, 3]]))
     with pytest.raises(ParameterError, match="draw them further apart"):
         seamless_patch(sketch, 0)
@@ -122,7 +122,7 @@ def test_any_sketch_becomes_a_closed_torus(count: int, seed: int) -> None:
     patch = seamless_patch(voronoi(count, seed), seed)
     assert not len(patch.graph.crossings()) and euler(patch.graph) == 0
     assert (patch.graph.degree > 0).all()
-    np.testing.assert_array_equal(patch.web.loose, patch.web.chains.free)
+    np.testing.assert_array_equal(patch.web.loose, patch.web.strands.free)
     corner = patch.web.corner
     assert (np.linalg.det(np.diff(corner, axis=1)) > 0).all()
     assert np.linalg.det(np.diff(corner, axis=1)).sum() / 2 == pytest.approx(np.prod(patch.graph.size))

@@ -13,13 +13,13 @@ from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import from_array
 from texloom.kernels.launch import thread_count, use
 from texloom.sketch.design import Design
+from texloom.sketch.filling.kinds import Assignment
+from texloom.sketch.filling.maps import FeatureMaps, feature_maps
+from texloom.sketch.filling.pixels import PixelSynthesis
+from texloom.sketch.filling.shapes import cell_shapes
+from texloom.sketch.filling.warp import Initialization, Start
 from texloom.sketch.graph import CellGraph, straight
-from texloom.sketch.kinds import Assignment
-from texloom.sketch.maps import FeatureMaps, feature_maps
-from texloom.sketch.pixels import PixelSynthesis
 from texloom.sketch.sample import SketchSample
-from texloom.sketch.shapes import cell_shapes
-from texloom.sketch.warp import Initialization, Start
 from texloom.synthesis.canvas import Canvas
 
 ZONE = 3  # texels beyond the reach of the maps where texels still choose

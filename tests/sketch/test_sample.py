@@ -6,8 +6,8 @@ import pytest
 from tests.sketch.drawn import voronoi
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Exemplar, from_array
+from texloom.sketch.filling.maps import feature_maps
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.maps import feature_maps
 from texloom.sketch.random import random_cells
 from texloom.sketch.sample import SketchSample
 

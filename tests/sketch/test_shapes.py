@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tests.sketch.drawn import voronoi, wall
+from texloom.sketch.filling.shapes import cell_shapes
 from texloom.sketch.graph import CellGraph, straight
 from texloom.sketch.random import random_cells
-from texloom.sketch.shapes import cell_shapes
 
 
 def polygon(points: list[tuple[float, float]]) -> CellGraph:

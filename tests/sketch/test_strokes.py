@@ -9,7 +9,7 @@ from tests.data import DATA, needs_data
 from texloom.errors import FileError
 from texloom.io.svg import Strokes, read_svg
 from texloom.sketch.bezier import lines
-from texloom.sketch.strokes import graph_of
+from texloom.sketch.reading.strokes import graph_of
 
 SIZE = (200.0, 200.0)
 CELLS = {

@@ -6,11 +6,11 @@ from texloom.demo import draw
 from texloom.exemplar.exemplar import Map
 from texloom.output.gather import gather_points, gather_sites, identity_sources
 from texloom.sketch.design import Design
-from texloom.sketch.mesh import TextureMesh
+from texloom.sketch.mesh.texture_mesh import TextureMesh
+from texloom.sketch.mesh.tiling import on_plane
 from texloom.sketch.random import random_cells
 from texloom.sketch.sample import SketchSample
 from texloom.sketch.surface import Designed, composed
-from texloom.sketch.tiling import on_plane
 from texloom.sources import SourceMap
 
 ROWS, COLUMNS = 40, 50

@@ -5,9 +5,9 @@ import pytest
 
 from tests.sketch.drawn import euler, voronoi, wall
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.patch import seamless_patch
-from texloom.sketch.tiling import on_plane, tile
-from texloom.sketch.web import web
+from texloom.sketch.mesh.patch import seamless_patch
+from texloom.sketch.mesh.tiling import on_plane, tile
+from texloom.sketch.mesh.web import web
 
 
 def test_a_patch_is_repeated_as_often_as_it_fits_and_stretched_to_fill() -> None:
@@ -34,8 +34,8 @@ def test_a_tiling_is_what_its_own_graph_gives(scale: float) -> None:
     assert not len(tiling.graph.crossings()) and euler(tiling.graph) == 0
     by = np.random.default_rng(0).normal(size=tiling.graph.vertices.shape)
     anew = web(tiling.graph)
-    np.testing.assert_array_equal(anew.chains.free, tiling.free)
-    np.testing.assert_array_equal(anew.chains.ends, tiling.ends)
+    np.testing.assert_array_equal(anew.strands.free, tiling.free)
+    np.testing.assert_array_equal(anew.strands.ends, tiling.ends)
     moved = tiling.moved(by)
     np.testing.assert_array_equal(moved.vertices[tiling.free], (tiling.graph.vertices + by)[tiling.free])
 

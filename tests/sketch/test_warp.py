@@ -9,13 +9,13 @@ from tests.data import DATA, needs_data
 from tests.sketch.drawn import voronoi
 from texloom.exemplar.features import match_image
 from texloom.io.stack import read_exemplar
-from texloom.sketch.detect import detect
+from texloom.sketch.filling.kinds import Assignment, Deal, neighbours
+from texloom.sketch.filling.maps import FeatureMaps, feature_maps
+from texloom.sketch.filling.shapes import CellShapes, cell_shapes
+from texloom.sketch.filling.warp import Initialization, Start, best_inside
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.kinds import Assignment, Deal, neighbours
-from texloom.sketch.maps import FeatureMaps, feature_maps
 from texloom.sketch.random import random_cells
-from texloom.sketch.shapes import CellShapes, cell_shapes
-from texloom.sketch.warp import Initialization, Start, best_inside
+from texloom.sketch.reading.detect import detect
 
 SAMPLE = random_cells((110.0, 130.0), cell=26, seed=1)
 TEXTURE = voronoi(40, 2, (170.0, 150.0))

@@ -22,11 +22,11 @@ from texloom.output.sketch_svg import write_sketch_svg
 from texloom.output.sources_file import SavedSources, save_sources
 from texloom.output.tiling import begin_at, quiet_start
 from texloom.sketch.design import Design
-from texloom.sketch.mesh import TextureMesh
-from texloom.sketch.patch import Patch, Sketches
+from texloom.sketch.filling.warp import Initialization
+from texloom.sketch.mesh.patch import Patch, Sketches
+from texloom.sketch.mesh.shown import shown_curves
+from texloom.sketch.mesh.texture_mesh import TextureMesh
 from texloom.sketch.sample import SketchSample
-from texloom.sketch.shown import shown_curves
-from texloom.sketch.warp import Initialization
 from texloom.synthesis.result import Result
 from texloom.systems import sketch as published
 

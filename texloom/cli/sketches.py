@@ -11,13 +11,13 @@ from texloom.errors import ExemplarError, ParameterError
 from texloom.exemplar.exemplar import Exemplar
 from texloom.io.image import read_image
 from texloom.sketch.design import Design
-from texloom.sketch.detect import detect
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.mesh import TextureMesh
+from texloom.sketch.mesh.scale import alike, cell_size
+from texloom.sketch.mesh.texture_mesh import TextureMesh
 from texloom.sketch.random import random_cells
-from texloom.sketch.read import read_sketch
+from texloom.sketch.reading.detect import detect
+from texloom.sketch.reading.read import read_sketch
 from texloom.sketch.sample import SketchSample
-from texloom.sketch.scale import alike, cell_size
 from texloom.sketch.surface import Designed
 
 RANDOM = "random"

@@ -1,4 +1,4 @@
-"""Drawings of cells as SVG, for any drawing program and for ``texloom.sketch.read`` to read again."""
+"""Drawings of cells as SVG, for any drawing program and for ``texloom.sketch.reading.read`` to read again."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float, Float64, Int
 
 _PARALLEL = 1e-9  # sine under which two segments run side by side
 
@@ -119,3 +119,19 @@ def _boxes_touch(
         between -= np.round(between / period) * period
     reach = (high[a] - low[a] + high[b] - low[b]) / 2
     return np.all(np.abs(between) <= reach + 1e-12, axis=1)
+
+
+def at_common_end(
+    a: Int[np.ndarray, "pair 2"],
+    b: Int[np.ndarray, "pair 2"],
+    on_a: Float64[np.ndarray, "pair"],
+    on_b: Float64[np.ndarray, "pair"],
+    *,
+    tolerance: float,
+) -> Bool[np.ndarray, "pair"]:
+    """Whether parameters on two edges (tail, head) are ends of both, to a tolerance, that are one vertex."""
+
+    def vertex(edge: np.ndarray, on: np.ndarray, none: int) -> np.ndarray:
+        return np.where(on < tolerance, edge[:, 0], np.where(on > 1 - tolerance, edge[:, 1], none))
+
+    return vertex(a, on_a, -1) == vertex(b, on_b, -2)

@@ -9,16 +9,16 @@ from jaxtyping import Float32, Float64, Int32
 
 from texloom.errors import ParameterError
 from texloom.sketch.cells import Cells, again
+from texloom.sketch.filling.kinds import Assignment, Deal, neighbours, painted
+from texloom.sketch.filling.maps import FeatureMaps, changed, feature_maps, redraw
+from texloom.sketch.filling.pixels import PixelSynthesis
+from texloom.sketch.filling.shapes import CellShapes, cell_shapes
+from texloom.sketch.filling.warp import Initialization, Start
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.kinds import Assignment, Deal, neighbours, painted
-from texloom.sketch.maps import FeatureMaps, changed, feature_maps, redraw
-from texloom.sketch.mesh import TextureMesh
-from texloom.sketch.patch import Patch, Sketches
-from texloom.sketch.pixels import PixelSynthesis
+from texloom.sketch.mesh.patch import Patch, Sketches
+from texloom.sketch.mesh.texture_mesh import TextureMesh
+from texloom.sketch.mesh.tiling import Tiling
 from texloom.sketch.sample import SketchSample
-from texloom.sketch.shapes import CellShapes, cell_shapes
-from texloom.sketch.tiling import Tiling
-from texloom.sketch.warp import Initialization, Start
 from texloom.sources import SourceMap
 from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.visits import Guide

@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float64, Int, Int32
 
 from texloom.sketch.bezier import lines, points_at, steps
 from texloom.sketch.cells import Cells, find_cells, measure
-from texloom.sketch.crossing import meetings
+from texloom.sketch.crossing import at_common_end, meetings
 
 _FLAT = 0.02  # texels from a chord to its curve where crossings are sought
 
@@ -124,19 +124,10 @@ class CellGraph:
             chords.first[chord] + share * (chords.last[chord] - chords.first[chord])
             for chord, share in ((met.first, met.on_first), (met.second, met.on_second))
         )
-        apart = ~self._at_common_end(a, b, on_a, on_b)
+        apart = ~at_common_end(self.edges[a], self.edges[b], on_a, on_b, tolerance=1e-6)
         apart &= (a != b) | (np.abs(on_a - on_b) > 1e-6)
         pair = np.unique(a[apart].astype(np.int64) * len(self.edges) + b[apart])
         return np.stack([pair // max(len(self.edges), 1), pair % max(len(self.edges), 1)], axis=1).astype(np.int32)
-
-    def _at_common_end(self, a: np.ndarray, b: np.ndarray, on_a: np.ndarray, on_b: np.ndarray) -> np.ndarray:
-        """Whether parameters on two edges are ends of both that are the same vertex."""
-
-        def vertex(edge: np.ndarray, on: np.ndarray, none: int) -> np.ndarray:
-            tail, head = self.edges[edge].T
-            return np.where(on < 1e-6, tail, np.where(on > 1 - 1e-6, head, none))
-
-        return vertex(a, on_a, -1) == vertex(b, on_b, -2)
 
 
 def straight(

@@ -5,7 +5,7 @@ import numpy as np
 from texloom import draws
 from texloom.errors import ParameterError
 from texloom.sketch.graph import CellGraph, straight
-from texloom.sketch.lines import joined
+from texloom.sketch.reading.lines import joined
 
 _PLACE = 0x7263  # purpose of the draws of the first points
 _ROUNDS = 12  # of moving points to the middle of their cells: even, not yet a honeycomb

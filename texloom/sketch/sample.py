@@ -14,12 +14,12 @@ from texloom.exemplar.exemplar import Exemplar
 from texloom.exemplar.features import match_image
 from texloom.exemplar.join import join
 from texloom.sketch.cells import Cells
-from texloom.sketch.detect import detect
+from texloom.sketch.filling.kinds import Kinds, kinds_of
+from texloom.sketch.filling.maps import FeatureMaps, feature_maps
+from texloom.sketch.filling.shapes import CellShapes, cell_shapes
+from texloom.sketch.filling.warp import best_inside
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.kinds import Kinds, kinds_of
-from texloom.sketch.maps import FeatureMaps, feature_maps
-from texloom.sketch.shapes import CellShapes, cell_shapes
-from texloom.sketch.warp import best_inside
+from texloom.sketch.reading.detect import detect
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Int
 
-from texloom.sketch.lines import Lines, joined, noded, tidy
+from texloom.sketch.reading.lines import Lines, joined, noded, tidy
 
 _SHORTER = 1.0, 0.5, 0.25  # of what is short: where short chains would run together
 _SAME = 1e-3  # texels between vertices that are one

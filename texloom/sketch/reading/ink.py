@@ -3,10 +3,10 @@
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
-from texloom.sketch.basins import basins
-from texloom.sketch.labels import borders
-from texloom.sketch.lines import Lines
-from texloom.sketch.mends import Mend, mends
+from texloom.sketch.reading.basins import basins
+from texloom.sketch.reading.labels import borders
+from texloom.sketch.reading.lines import Lines
+from texloom.sketch.reading.mends import Mend, mends
 
 _GAP = 0.45  # half-width of the widest gap that is closed, by the radius of the smaller cell beside it
 _SLIVER = 0.22  # radius of a region that is no cell but lies between lines drawn for one, by the typical cell's

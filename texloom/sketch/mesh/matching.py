@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Float64, Int
 
-from texloom.sketch.chains import edge_lengths, head_of, walk
 from texloom.sketch.graph import CellGraph
+from texloom.sketch.mesh.strands import edge_lengths, head_of, walk
 
 _FLAT = 0.25  # texels from a chord to its curve
 _REACH = 3  # doublings: an edge drawn in pieces is compared over up to eight of them on either side

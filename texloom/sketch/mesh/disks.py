@@ -9,7 +9,7 @@ from jaxtyping import Float64, Int
 from texloom import draws
 from texloom.kernels.launch import launch
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.tiling import Tiling
+from texloom.sketch.mesh.tiling import Tiling
 
 _DISC = 0.25  # radius of a disc, of the shortest side of a sketch
 _PITCH = 2.25  # radii from disc to disc, at least: on a lattice, each shifted within its cell

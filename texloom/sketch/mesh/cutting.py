@@ -7,7 +7,7 @@ from jaxtyping import Float, Int
 
 from texloom.sketch.bezier import pieces, points_at
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.matching import Crossed, cross_lines
+from texloom.sketch.mesh.matching import Crossed, cross_lines
 
 _MOST_SHORT = 2.0  # texels that a line may end before the border and be meant to reach it
 _FLATTEST = 0.05  # sine of the angle to the border under which it is drawn on straight out

@@ -6,10 +6,10 @@ import numpy as np
 from jaxtyping import Bool, Float64, Int
 
 from texloom.sketch.bezier import bend, lines
-from texloom.sketch.chains import carry, chains, head_of
-from texloom.sketch.cutting import Cut, Sides
-from texloom.sketch.facets import faceted
 from texloom.sketch.graph import CellGraph
+from texloom.sketch.mesh.cutting import Cut, Sides
+from texloom.sketch.mesh.facets import faceted
+from texloom.sketch.mesh.strands import carry, head_of, strands
 
 _HALVINGS = 6
 _FINE = 0.004  # texels from a chord to its curve where crossings are sought: the patch may be enlarged
@@ -25,7 +25,7 @@ def seamless(sketch: CellGraph, piece: Cut, *, inner: bool = True) -> CellGraph 
     """
     if not len(piece.graph.edges):
         return None
-    runs = chains(piece.graph)
+    runs = strands(piece.graph)
     held, by = _half_way(sketch, piece, runs.free & inner)
     by = _follow(piece.graph.vertices, held, by)
     border = np.concatenate([side.vertex for pair in piece.sides for side in pair])

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Float64
 
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.tiling import on_plane
+from texloom.sketch.mesh.tiling import on_plane
 
 
 def shown_curves(graph: CellGraph) -> Float64[np.ndarray, "curve 4 2"]:

@@ -7,7 +7,7 @@ from texloom.sketch.bezier import lines as straight_curves
 from texloom.sketch.bezier import points_at
 from texloom.sketch.cells import clockwise
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.lines import Lines
+from texloom.sketch.reading.lines import Lines
 
 _STIFFNESS = 1e-4  # pull of control points to thirds, beside one unit a sample: decides where samples do not
 _ROUNDS = 8  # of least squares and nearer parameters

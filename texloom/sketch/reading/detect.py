@@ -8,12 +8,12 @@ from texloom.exemplar.exemplar import Exemplar
 from texloom.exemplar.features import match_image
 from texloom.exemplar.pca import fit
 from texloom.exemplar.scale import dominant_scale
-from texloom.sketch.drawing import threshold
-from texloom.sketch.fitting import curved
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.ink import cells_of_ink, connected
-from texloom.sketch.lines import Lines
-from texloom.sketch.mending import cells_of
+from texloom.sketch.reading.drawing import threshold
+from texloom.sketch.reading.fitting import curved
+from texloom.sketch.reading.ink import cells_of_ink, connected
+from texloom.sketch.reading.lines import Lines
+from texloom.sketch.reading.mending import cells_of
 
 _BLUR = 0.07  # of the dominant scale: where lines between cells stand out
 _FINEST, _COARSEST = 0.8, 2.5  # texels of that blur

@@ -5,16 +5,16 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float64, Int, Int32
 
-from texloom.sketch.chains import carry, head_period
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.patch import Patch
+from texloom.sketch.mesh.patch import Patch
+from texloom.sketch.mesh.strands import carry, head_period
 
 
 @dataclass(frozen=True, eq=False)
 class Tiling:
     """A texture mesh before it is refined: on a torus with room for the texture, with what keeps it planar.
 
-    Arrays are those of the patch's chains and web, once for every tile.
+    Arrays are those of the patch's strands and web, once for every tile.
     """
 
     graph: CellGraph
@@ -61,10 +61,10 @@ def tile(patch: Patch, size: tuple[int, int], *, scale: float, tileable: bool) -
         CellGraph((rows, columns), places, named(graph.edges, on_edges), again(graph.curve * stretch), True),
         patch,
         stretch,
-        free=again(web.chains.free),
+        free=again(web.strands.free),
         loose=again(web.loose),
-        ends=named(web.chains.ends, web.chains.period),
-        share=again(web.chains.share),
+        ends=named(web.strands.ends, web.strands.period),
+        share=again(web.strands.share),
         corner=again((web.corner + 0.5) * stretch - 0.5),
         carrier=named(web.carrier, web.period),
         corner_share=again(web.share),

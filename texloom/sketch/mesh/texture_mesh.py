@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from texloom.errors import ParameterError
-from texloom.sketch.disks import refined
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.patch import Patch, Sketches, seamless_patch
-from texloom.sketch.tiling import Tiling, on_plane, tile
+from texloom.sketch.mesh.disks import refined
+from texloom.sketch.mesh.patch import Patch, Sketches, seamless_patch
+from texloom.sketch.mesh.tiling import Tiling, on_plane, tile
 
 
 @dataclass(frozen=True, kw_only=True)

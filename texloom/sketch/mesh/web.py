@@ -7,9 +7,9 @@ from jaxtyping import Bool, Float, Float64, Int, Int32
 
 from texloom import draws
 from texloom.sketch.bezier import bend, points_at
-from texloom.sketch.chains import Chains, chains, head_period
 from texloom.sketch.crossing import cross
 from texloom.sketch.graph import CellGraph
+from texloom.sketch.mesh.strands import Strands, head_period, strands
 
 _FLAT = 0.1  # texels from a chord to its curve
 _MARGIN = 0.4  # of the torus: how far beyond its border copies lie, or twice, or twice again
@@ -29,7 +29,7 @@ class Web:
     """
 
     graph: CellGraph
-    chains: Chains
+    strands: Strands
     loose: Bool[np.ndarray, "vertex"]  # the ends of curves that may be displaced
     corner: Float64[np.ndarray, "triangle 3 2"]  # places in one piece, perhaps beyond the border
     carrier: Int32[np.ndarray, "triangle 3 2"]  # vertices
@@ -65,7 +65,7 @@ def web(graph: CellGraph) -> Web:
             break
         points, splits = _split(graph, points, missing), splits + 1
 
-    runs = chains(graph)
+    runs = strands(graph)
     loose = runs.free.copy()
     loose[runs.ends[points.along[missing]]] = False
     flat = (place[triangle] + period * size, points.edge[triangle], points.on_edge[triangle], period)

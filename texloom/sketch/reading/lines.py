@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float, Float64, Int
 
-from texloom.sketch.crossing import meetings
+from texloom.sketch.crossing import at_common_end, meetings
 
 _MOST_ROUNDS = 8  # of splitting and welding: after the first few, what still crosses is dropped
 
@@ -85,7 +85,7 @@ def noded(vertices: Float[np.ndarray, "vertex 2"], edges: Int[np.ndarray, "edge 
         start, end = lines.vertices[lines.edges[:, 0]], lines.vertices[lines.edges[:, 1]]
         met = meetings(start, end)
         a, b = lines.edges[met.first], lines.edges[met.second]
-        apart = ~_at_common_vertex(a, b, met.on_first, met.on_second)
+        apart = ~at_common_end(a, b, met.on_first, met.on_second, tolerance=1e-9)
         if not apart.any():
             return lines
         if last:
@@ -96,15 +96,6 @@ def noded(vertices: Float[np.ndarray, "vertex 2"], edges: Int[np.ndarray, "edge 
         on = np.concatenate([met.on_first[apart], met.on_second[apart]])
         lines = _welded(_split(lines, edge, on), weld)
     raise AssertionError("the last round returns")
-
-
-def _at_common_vertex(a: np.ndarray, b: np.ndarray, on_a: np.ndarray, on_b: np.ndarray) -> np.ndarray:
-    """Whether parameters on two edges are ends of both that are one vertex."""
-
-    def vertex(edge: np.ndarray, on: np.ndarray, none: int) -> np.ndarray:
-        return np.where(on < 1e-9, edge[:, 0], np.where(on > 1 - 1e-9, edge[:, 1], none))
-
-    return vertex(a, on_a, -1) == vertex(b, on_b, -2)
 
 
 def _split(lines: Lines, edge: np.ndarray, on: np.ndarray) -> Lines:

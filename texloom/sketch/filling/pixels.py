@@ -16,8 +16,8 @@ from texloom.domain.neighbourhoods import as_stencils
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import Exemplar
 from texloom.exemplar.similarity import most_alike
-from texloom.sketch.maps import FeatureMaps, Window
-from texloom.sketch.warp import Start
+from texloom.sketch.filling.maps import FeatureMaps, Window
+from texloom.sketch.filling.warp import Start
 from texloom.synthesis.canvas import Canvas
 from texloom.synthesis.correction import usable_centres
 from texloom.synthesis.visits import Guide, Visits

@@ -5,9 +5,9 @@ from jaxtyping import Float64
 
 from texloom.errors import FileError
 from texloom.sketch.crossing import cross
-from texloom.sketch.labels import drawn_together
-from texloom.sketch.lines import Lines
-from texloom.sketch.mending import typical_cell
+from texloom.sketch.reading.labels import drawn_together
+from texloom.sketch.reading.lines import Lines
+from texloom.sketch.reading.mending import typical_cell
 
 _STRAIGHT = 0.6  # radians: the most a line turns where it crosses another
 _BACK = 4  # a quarter of the way to the next fork a line shows where it comes from

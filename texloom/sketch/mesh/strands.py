@@ -10,7 +10,7 @@ from texloom.sketch.graph import CellGraph
 
 
 @dataclass(frozen=True, eq=False)
-class Chains:
+class Strands:
     """The curve each edge is part of: what moves a curve's two ends carries all between them along.
 
     A vertex of any but two edges is an end; so is one vertex of every closed curve that has no other.
@@ -40,7 +40,7 @@ def carry(
     return carried
 
 
-def chains(graph: CellGraph) -> Chains:
+def strands(graph: CellGraph) -> Strands:
     """The curves of a graph."""
     free = graph.degree != 2
     free[_of_closed(graph, free)] = True
@@ -54,7 +54,7 @@ def chains(graph: CellGraph) -> Chains:
     tail = graph.vertices[graph.edges[:, 0]]
     reached = np.stack([tail + way[1::2], tail + graph.curve[:, 2] + way[0::2]], axis=1)
     period = np.rint((reached - graph.vertices[ends]) / np.array(graph.size)).astype(np.int32)
-    return Chains(ends, period, share, whole, free)
+    return Strands(ends, period, share, whole, free)
 
 
 def edge_lengths(graph: CellGraph) -> Float64[np.ndarray, "edge"]:

@@ -7,8 +7,8 @@ import numpy as np
 from texloom.sketch.bezier import lines as straight_curves
 from texloom.sketch.cells import Cells, find_cells
 from texloom.sketch.crossing import meetings
-from texloom.sketch.lines import Lines, joined, noded, tidy
-from texloom.sketch.mends import Mend, mends
+from texloom.sketch.reading.lines import Lines, joined, noded, tidy
+from texloom.sketch.reading.mends import Mend, mends
 
 # All in typical cells across.
 WELD = 1e-3  # vertices nearer than that are one

@@ -7,12 +7,12 @@ from jaxtyping import Bool, Float32
 
 from texloom.errors import FileError
 from texloom.io.image import read_stored
-from texloom.sketch.fitting import curved
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.ink import cells_of_ink, connected
-from texloom.sketch.mending import cells_of
-from texloom.sketch.mends import Mend
-from texloom.sketch.overlap import refuse_overlap
+from texloom.sketch.reading.fitting import curved
+from texloom.sketch.reading.ink import cells_of_ink, connected
+from texloom.sketch.reading.mending import cells_of
+from texloom.sketch.reading.mends import Mend
+from texloom.sketch.reading.overlap import refuse_overlap
 
 _BLOCK = 24  # texels a side of the blocks over which the paper's light is taken
 _PAPER = 85  # percentile of a block that is paper

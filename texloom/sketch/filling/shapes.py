@@ -8,8 +8,8 @@ from jaxtyping import Bool, Float32, Float64, Int32
 from texloom.kernels import sketch_cells as kernels
 from texloom.kernels.launch import launch
 from texloom.sketch.cells import Cells
+from texloom.sketch.filling.outlines import Outlines, outlines
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.outlines import Outlines, outlines
 
 _SEEN = 0.9  # of its area that a centre should see
 _LEAST_BINS, _MOST_BINS = 128, 2048

@@ -6,13 +6,13 @@ from jaxtyping import Bool
 from texloom.errors import FileError
 from texloom.io.svg import Strokes
 from texloom.sketch.bezier import points_at, steps
-from texloom.sketch.fitting import curved
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.ink import cells_of_ink
-from texloom.sketch.lines import Lines, noded
-from texloom.sketch.mending import WELD, Draft, cells_of, mend, typical_cell
-from texloom.sketch.mends import Mend
-from texloom.sketch.overlap import refuse_overlap
+from texloom.sketch.reading.fitting import curved
+from texloom.sketch.reading.ink import cells_of_ink
+from texloom.sketch.reading.lines import Lines, noded
+from texloom.sketch.reading.mending import WELD, Draft, cells_of, mend, typical_cell
+from texloom.sketch.reading.mends import Mend
+from texloom.sketch.reading.overlap import refuse_overlap
 
 _FLAT = 2e-3  # typical cells from a curve to the chords it is split by
 _NEAR = 6e-3  # typical cells from the lines to the curves laid through them

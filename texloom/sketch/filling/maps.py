@@ -8,8 +8,8 @@ from jaxtyping import Float32, Int32
 from texloom.kernels import sketch_maps as kernels
 from texloom.kernels.launch import launch
 from texloom.sketch.cells import Cells
+from texloom.sketch.filling.outlines import outlines
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.outlines import outlines
 
 Window = tuple[slice, slice]
 """Rows and columns of a rectangle of texels."""

@@ -10,9 +10,9 @@ from texloom import draws
 from texloom.arrays import Image
 from texloom.kernels import sketch_cells as kernels
 from texloom.kernels.launch import launch
-from texloom.sketch.kinds import Assignment
-from texloom.sketch.maps import FeatureMaps, Window
-from texloom.sketch.shapes import CellShapes
+from texloom.sketch.filling.kinds import Assignment
+from texloom.sketch.filling.maps import FeatureMaps, Window
+from texloom.sketch.filling.shapes import CellShapes
 from texloom.sources import SourceMap
 
 _RADIAL = 0.0, 1.0  # rims count as the square of the way to them

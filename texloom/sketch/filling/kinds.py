@@ -11,8 +11,8 @@ from texloom.errors import ExemplarError
 from texloom.kernels import sketch_cells as kernels
 from texloom.kernels.launch import launch
 from texloom.sketch.cells import Cells
+from texloom.sketch.filling.shapes import CellShapes
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.shapes import CellShapes
 
 _LEVELS = 16  # of each channel: colours that fall together count as one
 _SAME = 0.15  # in [0, 1]: colours that near are one kind

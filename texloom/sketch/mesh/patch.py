@@ -12,12 +12,12 @@ from jaxtyping import Float64
 
 from texloom import draws
 from texloom.errors import ParameterError
-from texloom.sketch.chains import Chains, chains, edge_lengths
-from texloom.sketch.cutting import Cut, cut, reaching_border
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.matching import match_crops
-from texloom.sketch.seam import mirrored, seamless
-from texloom.sketch.web import Web, web
+from texloom.sketch.mesh.cutting import Cut, cut, reaching_border
+from texloom.sketch.mesh.matching import match_crops
+from texloom.sketch.mesh.seam import mirrored, seamless
+from texloom.sketch.mesh.strands import Strands, edge_lengths, strands
+from texloom.sketch.mesh.web import Web, web
 
 _CROPS = 2048
 _SMALLEST = 0.5  # side of a crop, of the sketch's
@@ -84,7 +84,7 @@ def seamless_patch(sketches: Sketches, seed: int) -> Patch:
     found = [_of_one(sketch, seed) for sketch in every]
     number = min(range(len(found)), key=lambda n: (not _covered(found[n][0]), found[n][2]))
     graph, crop, cost = found[number]
-    runs = [chains(sketch) for sketch in every]
+    runs = [strands(sketch) for sketch in every]
     note = _long_edges(every[number], runs[number]) if cost > 0 else None
     return Patch(graph, number, crop, cost, bool(np.isinf(cost)), note, *_page(every, runs))
 
@@ -217,7 +217,7 @@ def _all_of(sketch: CellGraph) -> Float64[np.ndarray, "4"]:
 
 
 def _page(
-    sketches: Sequence[CellGraph], runs: Sequence[Chains]
+    sketches: Sequence[CellGraph], runs: Sequence[Strands]
 ) -> tuple[Float64[np.ndarray, "sketch 4"], Float64[np.ndarray, "joint 2"]]:
     """Sketches from left to right: where each lies, and the joints of all."""
     left = np.cumsum([0.0, *(sketch.size[1] for sketch in sketches)])[:-1]
@@ -227,14 +227,14 @@ def _page(
     return np.stack(sheets), page[np.argsort(page[:, 0], kind="stable")]
 
 
-def _joints(sketch: CellGraph, runs: Chains) -> Float64[np.ndarray, "joint 2"]:
+def _joints(sketch: CellGraph, runs: Strands) -> Float64[np.ndarray, "joint 2"]:
     """The ends of curves, but where the drawing's border cuts them off."""
     size = np.array(sketch.size)
     beside = ((sketch.vertices < _BORDER) | (sketch.vertices > size - 1 - _BORDER)).any(axis=1)
     return sketch.vertices[runs.free & ~(beside & (sketch.degree == 1))]
 
 
-def _long_edges(sketch: CellGraph, runs: Chains) -> str | None:
+def _long_edges(sketch: CellGraph, runs: Strands) -> str | None:
     """What to say of a sketch with edges longer than a third of it, §4.1: a crop has little room for them.
 
     Departure: one in ten may be so long, as the odd line along a border is.

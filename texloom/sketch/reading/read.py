@@ -7,11 +7,11 @@ from pathlib import Path
 from texloom.errors import TexloomError
 from texloom.io.stack import read_exemplar
 from texloom.io.svg import read_svg
-from texloom.sketch.detect import detect
-from texloom.sketch.drawing import graph_of_drawing, is_drawing, read_drawing
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.mends import Mend
-from texloom.sketch.strokes import graph_of
+from texloom.sketch.reading.detect import detect
+from texloom.sketch.reading.drawing import graph_of_drawing, is_drawing, read_drawing
+from texloom.sketch.reading.mends import Mend
+from texloom.sketch.reading.strokes import graph_of
 
 _Sketch = tuple[CellGraph, list[Mend]]
 

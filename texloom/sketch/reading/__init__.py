@@ -1,0 +1,1 @@
+"""Sketches in: files, strokes, pictures and samples become planar graphs of cells."""
