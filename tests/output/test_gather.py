@@ -22,13 +22,25 @@ def unit_normals(rows=8, columns=8, seed=1):
     return Map((0.5 * vectors + 0.5).astype(np.float32), "normal", 8)
 
 
+def counts(f):
+    """What texels -1, 0, 1 and 2 count for: the line between the middle two, less 4/3 of half the curvature."""
+    a, b, c, d = np.eye(4)
+    line, curvature = (1 - f) * b + f * c, (1 - f) * (a - 2 * b + c) + f * (b - 2 * c + d)
+    return line - 4 / 3 * f * (1 - f) / 2 * curvature
+
+
 def sample(image, row, column):
-    """Bilinear, nearest edge outside."""
-    row, column = np.clip(row, 0, image.shape[0] - 1), np.clip(column, 0, image.shape[1] - 1)
-    r, c = int(row), int(column)
-    r1, c1 = min(r + 1, image.shape[0] - 1), min(c + 1, image.shape[1] - 1)
-    fr, fc = row - r, column - c
-    return (1 - fr) * ((1 - fc) * image[r, c] + fc * image[r, c1]) + fr * ((1 - fc) * image[r1, c] + fc * image[r1, c1])
+    """Cubic, edges repeated; bounded by the four texels around and their difference, and by [0, 1]."""
+    rows, columns = image.shape[:2]
+    row, column = np.clip(row, -1, rows), np.clip(column, -1, columns)
+    down = np.clip(int(np.floor(row)) + np.arange(-1, 3), 0, rows - 1)
+    across = np.clip(int(np.floor(column)) + np.arange(-1, 3), 0, columns - 1)
+    texels = image[down][:, across]
+    value = np.einsum("r,c,rcx->x", counts(row % 1), counts(column % 1), texels)
+    low, high = texels[1:3, 1:3].min(axis=(0, 1)), texels[1:3, 1:3].max(axis=(0, 1))
+    least, most = 2 * low - high, 2 * high - low
+    least, most = np.where(low >= 0, np.maximum(least, 0), least), np.where(high <= 1, np.minimum(most, 1), most)
+    return np.clip(value, least, most)
 
 
 @pytest.mark.parametrize("kind", ["colour", "data", "normal"])
@@ -90,6 +102,42 @@ def test_corners_that_agree_show_the_exemplar_itself():
         offsets=(point - corners)[None],
     )
     np.testing.assert_allclose(value[0], sample(map.image, *point), atol=1e-6)
+
+
+def read(image, place):
+    sources = SourceMap(place.astype(np.float32)[:, None], np.ones((len(place), 1), np.float32))
+    return gather_sites(sources, Map(image.astype(np.float32)[..., None], "data", 32))[:, 0]
+
+
+def test_fine_waves_survive():
+    """Waves of four texels half-way between texels: 94 % of them, where a bilinear read leaves 71 %."""
+    waves = np.cos(np.arange(64) * np.pi / 2)[None] + np.zeros((8, 1))
+    place = np.stack([np.full(24, 4.0), np.arange(20, 44) + 0.5], axis=1)
+    np.testing.assert_allclose(read(waves, place) / np.cos(place[:, 1] * np.pi / 2), 0.943, atol=0.001)
+
+
+def test_straight_slopes_are_kept():
+    row, column = np.mgrid[:20, :20] / 100
+    place = np.random.default_rng(8).uniform(1, 18, (200, 2))
+    np.testing.assert_allclose(read(row + 3 * column, place), place @ [0.01, 0.03], atol=1e-6)
+
+
+def test_what_is_flat_stays_flat_beside_an_edge():
+    """Nothing rings into the texels beside: so nothing masked shows either."""
+    step = np.where(np.arange(12) < 6, 0.2, 0.9)[None] + np.zeros((9, 1))
+    place = np.random.default_rng(6).uniform(0, 8, (400, 2)) + [0, 2]
+    shown = read(step, place)
+    np.testing.assert_array_equal(shown[place[:, 1] <= 5], np.float32(0.2))
+    np.testing.assert_array_equal(shown[place[:, 1] >= 6], np.float32(0.9))
+
+
+def test_shares_stay_shares_and_light_stays_light():
+    rng = np.random.default_rng(7)
+    specks, place = rng.integers(0, 2, (12, 12)), rng.uniform(0, 11, (500, 2))
+    shown = read(specks, place)
+    assert shown.min() == 0 and shown.max() == 1
+    bright = read(8 * specks, place)
+    assert bright.min() == 0 and 8.1 < bright.max() < 16
 
 
 @settings(max_examples=30, deadline=None)

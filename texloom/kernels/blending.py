@@ -8,7 +8,7 @@ runs the other way.
 
 import warp as wp
 
-from texloom.kernels.gather import mix4, tap_place
+from texloom.kernels.taps import mix4, tap_place
 
 
 @wp.kernel(enable_backward=False)

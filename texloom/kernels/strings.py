@@ -11,7 +11,7 @@ columns beyond the sample are its first or last.
 
 import warp as wp
 
-from texloom.kernels.gather import mix4, tap_place
+from texloom.kernels.taps import mix4, tap_place
 
 _MASKED = wp.constant(1.0e6)  # error of a point that would show a masked texel
 _CIRCLE = wp.constant(6.283185307179586)
