@@ -13,7 +13,6 @@ from texloom.output.gather import gather_images
 from texloom.output.image import encoded_picture
 from texloom.sketch.design import Design
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.mesh.scale import cell_size
 from texloom.sketch.mesh.texture_mesh import TextureMesh
 from texloom.sketch.reading.read import read_sketch
 from texloom.sketch.sample import SketchSample
@@ -30,7 +29,6 @@ PAIRS = {  # sample: sketch
     "mud-cracked-400": "cracker-cracks-512",
 }
 SIDE = 256  # texels of a texture
-_STRAY = 0.4  # of a cell: the radius of refinement, as on the command line
 
 
 def load_sample(data: Path, name: str) -> SketchSample:
@@ -45,8 +43,7 @@ def load_sketch(data: Path, name: str) -> CellGraph:
 
 def mesh_of(sketch: CellGraph, sample: SketchSample, side: int = SIDE) -> TextureMesh:
     """Cells as large as the sample's, refined as by default."""
-    cell = sample.cell_size
-    return TextureMesh(size=(side, side), scale=cell / cell_size(sketch), radius=_STRAY * cell)
+    return TextureMesh.of(sketch, (side, side), cell=sample.cell_size)
 
 
 def design_of(sketch: CellGraph, sample: SketchSample, side: int = SIDE) -> Design:

@@ -10,7 +10,6 @@ from texloom.sketch.graph import CellGraph
 from texloom.sketch.reading.strokes import graph_of
 
 PAPER = (200.0, 200.0)  # texels
-STRAY = 0.4  # of a cell: how far a texture's cells may stray
 
 _THIRDS = np.linspace(0, 1, 4)[:, None]
 

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from examples.pictures import Picture, below, beside, of_map, shown
-from examples.sketches import STRAY, honeycomb
+from examples.sketches import honeycomb
 from texloom.demo import draw
 from texloom.sketch.design import Design
 from texloom.sketch.mesh.texture_mesh import TextureMesh
@@ -27,11 +27,11 @@ def heart(side: int, palette: Float32[np.ndarray, "kind 3"]) -> Float32[np.ndarr
 
 def picture(detail: float = 1.0) -> Picture:
     """Samples, the pattern, the texture; ``detail`` scales the last."""
-    side, drawn = round(360 * detail), [draw(name, size=176) for name in SAMPLES]
+    side, drawn, sketch = round(360 * detail), [draw(name, size=176) for name in SAMPLES], honeycomb()
     sample = SketchSample.of(drawn)
     pattern = heart(side, sample.kinds.palette)
-    mesh = TextureMesh(size=(side, side), scale=0.85, radius=STRAY * sample.cell_size)
-    design = Design(sketch=honeycomb(), sample=sample, mesh=mesh, pattern=pattern)
+    mesh = TextureMesh.of(sketch, (side, side), scale=0.85)
+    design = Design(sketch=sketch, sample=sample, mesh=mesh, pattern=pattern)
     samples = below(*(of_map(one.lead) for one in drawn))
     painted = (255 * pattern[::2, ::2]).astype(np.uint8)
     return beside(samples, painted, shown(design.sources, sample.exemplar, mesh.size))

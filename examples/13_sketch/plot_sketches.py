@@ -7,7 +7,7 @@ Wang et al. 2014, "Interactive texture design and synthesis from mesh sketches",
 """
 
 from examples.pictures import Picture, below, beside, inset, of_map, shown
-from examples.sketches import STRAY, arcs, drawn, stars
+from examples.sketches import arcs, drawn, stars
 from texloom.demo import draw
 from texloom.sketch.design import Design
 from texloom.sketch.mesh.texture_mesh import TextureMesh
@@ -21,7 +21,7 @@ def picture(detail: float = 1.0) -> Picture:
     size, rows = round(224 * detail), []
     for sketch, name, side, scale in DESIGNS:
         sample = SketchSample.of([draw(name, size=side)])
-        mesh = TextureMesh(size=(size, size), scale=scale, radius=STRAY * sample.cell_size)
+        mesh = TextureMesh.of(sketch, (size, size), scale=scale)
         design = Design(sketch=sketch, sample=sample, mesh=mesh)
         texture = shown(design.sources, sample.exemplar, mesh.size)
         rows.append(beside(drawn(sketch), drawn(design.graph), inset(texture, of_map(sample.exemplar.lead), side=64)))

@@ -89,7 +89,7 @@ def test_a_texture_and_all_that_is_told(folder: Path, capsys: Captured) -> None:
     assert told["radius"] == pytest.approx(SQUARE / 4, rel=0.15)
     assert {"read", "cells", "mesh", "maps", "start", "pixels", "write", "report"} < set(told["seconds"])
     assert Image.open(folder / "a.png").info["sketch"] == "cells.svg"
-    assert "Texture mesh" in (folder / "a.html").read_text()
+    assert "Lines between cells" in (folder / "a.html").read_text()
     assert run(folder, "apply", "{a.npz}", "{squares.png}", "-o", "{again.png}") == 0
     np.testing.assert_array_equal(pixels(folder / "a.png"), pixels(folder / "again.png"))
 
@@ -261,12 +261,29 @@ def test_cells_are_carried_over_a_surface(folder: Path, method: str, capsys: Cap
         (["--method", "texton"], "is not for --method texton: leave it out"),
         (["--fuse", "{halves.png}"], "--fuse and --sketch"),
         (["--sketch", "{none.svg}"], "none.svg: no such file"),
+        (["--sample-sketch", "{grid.svg}", "--sample-sketch", "{grid.svg}"], "2 drawings of cells for 1 samples"),
+        (["--radius", "-1"], "--radius -1: texels, 0 or more"),
     ],
 )
 def test_surfaces_refuse_what_does_not_go(folder: Path, words: list[str], message: str, capsys: Captured) -> None:
     start = ["surface", "{ball.obj}", "{squares.png}", "-o", "{bad.glb}", "--sketch", "{cells.svg}"]
     assert run(folder, *start, *words) == 2
     assert message in capsys.readouterr().err and not (folder / "bad.glb").exists()
+
+
+def test_cells_of_a_surface_stray_and_are_drawn_as_asked(folder: Path, capsys: Captured) -> None:
+    grown = {}
+    for radius in ("0", "12"):
+        words = ["--sketch", "{cells.svg}", "--sample-sketch", "{grid.svg}", "--radius", radius, "--sources", "{r.npz}"]
+        assert run(folder, "surface", "{ball.obj}", "{squares}", "-o", "{r.ply}", "--repeats", "0.5", *words) == 0
+        grown[radius] = load_sources(folder / "r.npz")
+        assert float(grown[radius].settings["radius"]) == float(radius)
+        assert grown[radius].settings["sample_sketch"] == "grid.svg"
+    assert not np.array_equal(grown["0"].sources.position, grown["12"].sources.position)
+    capsys.readouterr()
+    for words, message in {("--radius", "3"): "--radius 3.0", ("--sample-sketch", "{grid.svg}"): "grid.svg"}.items():
+        assert run(folder, "surface", "{ball.obj}", "{squares.png}", "-o", "{bad.glb}", *words) == 2
+        assert f"{message} is for cells that are laid: add --sketch SKETCH" in capsys.readouterr().err
 
 
 @needs_data

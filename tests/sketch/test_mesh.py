@@ -5,6 +5,7 @@ from tests.data import DATA, needs_data
 from tests.sketch.drawn import voronoi
 from texloom.errors import ParameterError
 from texloom.io.svg import read_svg
+from texloom.sketch.mesh.scale import cell_size
 from texloom.sketch.mesh.texture_mesh import TextureMesh
 from texloom.sketch.reading.strokes import graph_of
 
@@ -60,3 +61,15 @@ def test_every_sketch_becomes_a_mesh(name: str) -> None:
         graph = mesh.refined(mesh.tiled(patch), 0)
         assert not len(graph.crossings())
         assert len(graph.cells()) > 20
+
+
+def test_cells_are_as_large_as_asked_and_stray_by_a_quarter():
+    sketch = voronoi(30, seed=2)
+    own = cell_size(sketch)
+    as_drawn, as_asked = TextureMesh.of(sketch, (90, 80)), TextureMesh.of(sketch, (90, 80), cell=3 * own, tileable=True)
+    assert (as_drawn.scale, as_drawn.radius, as_drawn.tileable) == (1, own / 4, False)
+    np.testing.assert_allclose((as_asked.scale, as_asked.radius), (3, 0.75 * own))
+    assert as_asked.tileable and as_asked.size == (90, 80)
+    assert TextureMesh.of(sketch, (90, 80), cell=8, scale=0.5, radius=2) == TextureMesh(
+        size=(90, 80), scale=0.5, radius=2
+    )

@@ -121,6 +121,7 @@ def test_every_sketch_gives_its_cells(name):
     from_border = np.minimum(ends + 0.5, np.array(graph.size) - 0.5 - ends).min(axis=1)
     assert len(ends) == 0 or from_border.max() < 8
     assert all(np.isfinite([note.row, note.column]).all() for note in notes)
+    assert len({str(note) for note in notes}) == len(notes)
 
 
 @settings(max_examples=50, deadline=None)

@@ -88,8 +88,9 @@ def design(wish: SketchWish, session: Session) -> Mapping[str, Any]:
 
             run = Run(joined.exemplar, Result(grown), settings, dict(session.seconds), wish.command)
             account = of_image(run, Grid(rows, columns, wrap=wish.tileable), maps)
-            cells = Figure(stored(to_map(made.maps.closeness[..., None], "data"), 8), "Lines, as near as texels are")
-            figures = {**account.figures, "Texture mesh": [cells]}
+            cells = {"The sample's": made.sample.maps, "The texture's": made.maps}
+            drawn = [Figure(stored(to_map(m.closeness[..., None], "data"), 8), name) for name, m in cells.items()]
+            figures = {**account.figures, "Lines between cells": drawn}
             session.wrote(write_report(wish.report, replace(account, figures=figures)))
     tell_dropped(joined)
     shown = np.unique(made.maps.cell[made.maps.cell >= 0])
@@ -112,8 +113,9 @@ def _inputs(wish: SketchWish, stacks: Sequence[Exemplar], session: Session) -> I
             sample, mends = read_cells(stacks, wish.samples, drawings=wish.drawings, kinds=wish.kinds)
         cell = None if sample is None else sample.cell_size
         drawn = read_sketches(wish.sketches, size=wish.size, cell=cell, seed=wish.seed)
-        mesh = drawn.mesh(wish.size, cell, scale=wish.scale, radius=wish.radius)
-        return Inputs(drawn.graphs, sample, replace(mesh, tileable=wish.tileable), drawn.mends + mends)
+        wanted = {"scale": wish.scale, "radius": wish.radius, "tileable": wish.tileable}
+        mesh = TextureMesh.of(drawn.graphs[0], wish.size, cell=cell, **wanted)
+        return Inputs(drawn.graphs, sample, mesh, drawn.mends + mends)
 
 
 def _designed(wish: SketchWish, inputs: Inputs, inside: Any, pattern: np.ndarray | None) -> Design:

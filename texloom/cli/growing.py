@@ -29,11 +29,12 @@ def grow(wish: SurfaceWish, session: Session) -> Texture:
         colours = fusing.parse_palette(wish.fusion.palette)
         chosen = wish.method.build()
     learnt, drawn, mended = joined.exemplar, None, []
-    if wish.sketches:
+    if wish.cells.sketches:
         with session.stage("design"):
             from texloom.cli.sketches import designed
 
-            drawn, mended = designed(wish.sketches, stacks, wish.samples, seed=wish.seed)
+            laid = {"drawings": wish.cells.drawings, "radius": wish.cells.radius}
+            drawn, mended = designed(wish.cells.sketches, stacks, wish.samples, **laid, seed=wish.seed)
             learnt = drawn.exemplar
     if wish.analysis is not None and wish.fusion.map is None:
         chosen = with_analysis(chosen, wish.analysis, learnt, session)
@@ -77,7 +78,9 @@ def grow(wish: SurfaceWish, session: Session) -> Texture:
             scale=guides.scale,
             symmetry=guides.symmetry,
             mask=wish.mask,
-            sketch=", ".join(Path(word).name for word in wish.sketches) or None,
+            sketch=", ".join(Path(word).name for word in wish.cells.sketches) or None,
+            sample_sketch=", ".join(path.name for path in wish.cells.drawings) or None,
+            radius=wish.cells.radius,
             fuse=None if wish.fusion.map is None else Path(wish.fusion.map).name,
             belts=belts,
         )

@@ -74,6 +74,14 @@ Sketches = Annotated[
         help="Cells to lay: an SVG, a drawing, a picture, or random; any number, used together.",
     ),
 ]
+SampleSketch = Annotated[
+    list[Path] | None,
+    typer.Option(metavar="FILE", help="The sample's own cells; of several, one each. Detected if not given."),
+]
+Radius = Annotated[
+    float | None,
+    typer.Option(metavar="R", help="Texels that cells stray: 0 is regular; a quarter of a cell if not given."),
+]
 Seed = Annotated[int, typer.Option(metavar="N", help="Same seed, same pixels.")]
 Device = Annotated[str, typer.Option(metavar="NAME", help="cpu or cuda.")]
 Threads = Annotated[int | None, typer.Option(metavar="N", min=1, max=1024, help="CPU threads; all cores if not given.")]

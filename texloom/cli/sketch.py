@@ -58,15 +58,9 @@ def sketch(
         float | None,
         typer.Option(metavar="S", help="Texels a texel of the sketch; cells as large as the sample's if not given."),
     ] = None,
-    radius: Annotated[
-        float | None,
-        typer.Option(metavar="R", help="Texels that cells stray: 0 is regular; a quarter of a cell if not given."),
-    ] = None,
+    radius: options.Radius = None,
     tileable: Annotated[bool, typer.Option("--tileable", help="Opposite borders fit together.")] = False,
-    sample_sketch: Annotated[
-        list[Path] | None,
-        typer.Option(metavar="FILE", help="The sample's own cells; of several, one each. Detected if not given."),
-    ] = None,
+    sample_sketch: options.SampleSketch = None,
     kinds: Annotated[
         Path | None,
         typer.Option(metavar="MAP", help="With --pattern: a picture of the sample, a colour a kind of cell."),
@@ -152,17 +146,22 @@ def _check(wish: SketchWish) -> None:
         raise ParameterError(
             f"--pattern {wish.pattern.name} needs kinds of cells: add --kinds MAP, or give several samples"
         )
-    if len(wish.drawings) not in (0, len(wish.samples)):
-        many = f"{len(wish.drawings)} drawings of cells for {len(wish.samples)} samples"
-        raise ParameterError(f"--sample-sketch {wish.drawings[0].name}: {many}: give one each, or none")
+    check_cells(wish.drawings, wish.samples, wish.radius)
     if wish.inside is not None:
         options.choose("inside", wish.inside, INSIDE)
     if wish.preset is not None:
         options.choose("preset", wish.preset, (PRESET,))
     if wish.scale is not None and not wish.scale > 0:
         raise ParameterError(f"--scale {wish.scale:g}: texels of the texture in one of the sketch, above 0")
-    if wish.radius is not None and not wish.radius >= 0:
-        raise ParameterError(f"--radius {wish.radius:g}: texels, 0 or more")
+
+
+def check_cells(drawings: Sequence[Path], samples: Sequence[Path], radius: float | None) -> None:
+    """Raises: ParameterError, for drawings that are not one for each sample, or a radius below 0."""
+    if len(drawings) not in (0, len(samples)):
+        many = f"{len(drawings)} drawings of cells for {len(samples)} samples"
+        raise ParameterError(f"--sample-sketch {drawings[0].name}: {many}: give one each, or none")
+    if radius is not None and not radius >= 0:
+        raise ParameterError(f"--radius {radius:g}: texels, 0 or more")
 
 
 def _refuse(why: str, **given: object) -> None:

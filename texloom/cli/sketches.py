@@ -12,7 +12,7 @@ from texloom.exemplar.exemplar import Exemplar
 from texloom.io.image import read_image
 from texloom.sketch.design import Design
 from texloom.sketch.graph import CellGraph
-from texloom.sketch.mesh.scale import alike, cell_size
+from texloom.sketch.mesh.scale import alike
 from texloom.sketch.mesh.texture_mesh import TextureMesh
 from texloom.sketch.random import random_cells
 from texloom.sketch.reading.detect import detect
@@ -23,7 +23,6 @@ from texloom.sketch.surface import Designed
 RANDOM = "random"
 _MOST_RANDOM = 16  # cells across a random sketch at most: larger textures repeat it
 _FEWEST_RANDOM = 2
-_STRAY = 0.25  # of a cell: bricks stay bricks, repetition goes
 _ACROSS = 10  # cells across a texture that is grown over a surface,
 _SMALLEST, _LARGEST = 256, 512  # and its sides, texels
 
@@ -34,15 +33,6 @@ class Drawn:
 
     graphs: tuple[CellGraph, ...]
     mends: list[str]
-
-    def mesh(
-        self, size: tuple[int, int], cell: float | None, *, scale: float | None = None, radius: float | None = None
-    ) -> TextureMesh:
-        """The texture mesh of rows and columns, ``cell`` the texels across one unless ``scale`` is given."""
-        own = cell_size(self.graphs[0])
-        if scale is None:
-            scale = 1.0 if cell is None else cell / own
-        return TextureMesh(size=size, scale=scale, radius=_STRAY * scale * own if radius is None else radius)
 
 
 def read_sketches(words: Sequence[str], *, size: tuple[int, int], cell: float | None, seed: int) -> Drawn:
@@ -96,15 +86,21 @@ def _detected(stack: Exemplar, name: str) -> CellGraph:
 
 
 def designed(
-    words: Sequence[str], stacks: Sequence[Exemplar], names: Sequence[Path], *, seed: int
+    words: Sequence[str],
+    stacks: Sequence[Exemplar],
+    names: Sequence[Path],
+    *,
+    drawings: Sequence[Path] = (),
+    radius: float | None = None,
+    seed: int,
 ) -> tuple[Designed, list[str]]:
-    """A texture of the sketches' cells to grow over a surface, and what was mended in them."""
-    sample, _ = read_cells(stacks, names)
+    """A texture of the sketches' cells to grow over a surface, and what was mended in drawings."""
+    sample, mends = read_cells(stacks, names, drawings=drawings)
     cell = sample.cell_size
     side = int(np.clip(round(_ACROSS * cell), _SMALLEST, _LARGEST))
     drawn = read_sketches(words, size=(side, side), cell=cell, seed=seed)
-    mesh = drawn.mesh((side, side), cell)
-    return Designed.of(Design(sketch=drawn.graphs, sample=sample, mesh=mesh, seed=seed)), drawn.mends
+    mesh = TextureMesh.of(drawn.graphs[0], (side, side), cell=cell, radius=radius)
+    return Designed.of(Design(sketch=drawn.graphs, sample=sample, mesh=mesh, seed=seed)), drawn.mends + mends
 
 
 def picture(path: Path) -> Float32[np.ndarray, "row column 3"]:

@@ -10,7 +10,7 @@ from texloom.cli.analyses import check_analysis
 from texloom.cli.fuse import BELTS, Belts, Palette
 from texloom.cli.meshes import Meshes, over_meshes
 from texloom.cli.session import Session
-from texloom.cli.surface_wish import Fusion, Guides, QuiltWish, SurfaceWish
+from texloom.cli.surface_wish import CellsWish, Fusion, Guides, QuiltWish, SurfaceWish
 from texloom.errors import ParameterError
 
 HOMES = {"vertex": (".glb", ".ply"), "atlas": (".glb", ".obj"), "sample-uv": (".glb", ".obj")}
@@ -30,6 +30,8 @@ def surface(
     palette: Palette = None,
     belts: Belts = None,
     sketch: options.Sketches = None,
+    sample_sketch: options.SampleSketch = None,
+    radius: options.Radius = None,
     repeats: Annotated[
         float | None,
         typer.Option(metavar="R", help="Sample widths across the longest side; 3, or what a million texels hold."),
@@ -113,7 +115,7 @@ def surface(
         repeats=repeats,
         texel=texel,
         guides=Guides(direction, scale, symmetry, progressive),
-        sketches=sketch or [],
+        cells=CellsWish(sketch or [], sample_sketch or [], radius),
         fusion=Fusion(fuse, palette, options.choose("belts", belts or BELTS[0], BELTS)),
         method=None if quilts else methods.wish(method, search, preset, surface=True, **sweeping),
         quilting=quilting if quilts else None,
@@ -129,6 +131,7 @@ def surface(
         command=options.command_line(context),
     )
     options.check_mask(mask, samples)
+    wanted.cells.check(samples)
     _check_fusion(fuse, palette, preset)
     if fuse is not None and method == "sweep":
         raise ParameterError("--method sweep grows whole textures and cannot continue one: choose another for --fuse")

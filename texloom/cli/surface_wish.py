@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from texloom.cli.library import SUFFIX
 from texloom.cli.meshes import Meshes
+from texloom.cli.sketch import check_cells
 from texloom.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -63,6 +64,23 @@ class QuiltWish:
                 raise ParameterError(f"--{name} {value} is not for --method texton: leave it out")
 
 
+@dataclass(frozen=True)
+class CellsWish:
+    """The cells to design a texture by; without sketches, the samples are taken as they are."""
+
+    sketches: Sequence[str]
+    drawings: Sequence[Path]  # of the samples' own cells
+    radius: float | None
+
+    def check(self, samples: Sequence[Path]) -> None:
+        """Raises: ParameterError, for options that do not go together, or a value out of its range."""
+        given = {"sample-sketch": self.drawings[0].name if self.drawings else None, "radius": self.radius}
+        for name, value in given.items():
+            if value is not None and not self.sketches:
+                raise ParameterError(f"--{name} {value} is for cells that are laid: add --sketch SKETCH")
+        check_cells(self.drawings, samples, self.radius)
+
+
 @dataclass(frozen=True, kw_only=True)
 class SurfaceWish:
     """All options, those of one kind together."""
@@ -75,7 +93,7 @@ class SurfaceWish:
     repeats: float | None
     texel: float | None
     guides: Guides
-    sketches: Sequence[str]  # of the cells to design a texture by; none: the samples as they are
+    cells: CellsWish
     fusion: Fusion
     method: "MethodWish | None"  # None: quilting
     quilting: QuiltWish | None

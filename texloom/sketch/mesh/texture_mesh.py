@@ -8,7 +8,10 @@ from texloom.errors import ParameterError
 from texloom.sketch.graph import CellGraph
 from texloom.sketch.mesh.disks import refined
 from texloom.sketch.mesh.patch import Patch, Sketches, seamless_patch
+from texloom.sketch.mesh.scale import cell_size
 from texloom.sketch.mesh.tiling import Tiling, on_plane, tile
+
+_STRAY = 0.25  # of a cell: bricks stay bricks, repetition goes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,6 +38,29 @@ class TextureMesh:
             raise ParameterError(f"radius {self.radius:g}, iterations {self.iterations}: neither may be below 0")
         if not 0 <= self.strength <= 1:
             raise ParameterError(f"strength {self.strength:g}: it must be between 0 and 1")
+
+    @staticmethod
+    def of(
+        sketch: CellGraph,
+        size: tuple[int, int],
+        *,
+        cell: float | None = None,
+        scale: float | None = None,
+        radius: float | None = None,
+        tileable: bool = False,
+    ) -> "TextureMesh":
+        """A mesh of a sketch's cells that stray by a quarter of one, unless ``radius`` is given.
+
+        Cells are ``cell`` texels across, such as those of a sample (``SketchSample.cell_size``), or as large as drawn;
+        or ``scale`` is given. Several sketches are first brought to one size (``alike``).
+
+        Raises: ParameterError, for a sketch without cells, or a value out of its range.
+        """
+        own = cell_size(sketch)
+        if scale is None:
+            scale = 1.0 if cell is None else cell / own
+        stray = _STRAY * scale * own if radius is None else radius
+        return TextureMesh(size=size, scale=scale, tileable=tileable, radius=stray)
 
     def run(self, sketch: Sketches, seed: int) -> CellGraph:
         """All stages at once."""

@@ -46,7 +46,9 @@ def graph_of(strokes: Strokes) -> tuple[CellGraph, list[Mend]]:
         together, notes, blur = _brought_together(draft)
         if 2 * len(cells_of(together)) >= len(cells):
             return curved(strokes.size, together, tolerance=max(tolerance, blur)), notes
-    return curved(strokes.size, draft.lines, tolerance=tolerance), list(dict.fromkeys(draft.mends))
+    return curved(strokes.size, draft.lines, tolerance=tolerance), list(
+        {str(note): note for note in draft.mends}.values()
+    )
 
 
 def _brought_together(draft: Draft) -> tuple[Lines, list[Mend], float]:
