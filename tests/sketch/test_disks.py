@@ -52,7 +52,7 @@ def naive_step(tiling: Tiling, seed: int, radius: float, strength: float) -> np.
     reach, cells, origin, disc, middle = _discs(tiling, seed, 1)
     size, joints = np.array(tiling.graph.size), (tiling.patch.joints + 0.5) * tiling.scale - 0.5
     step = np.zeros_like(tiling.graph.vertices)
-    for v in np.flatnonzero(tiling.free):
+    for v in np.flatnonzero(tiling.loose):
         for cell, centre in enumerate(disc):
             from_middle = tiling.graph.vertices[v] - origin[0] - centre
             from_middle = from_middle - np.array(divmod(cell, cells[1])) * (size / cells)
@@ -65,14 +65,14 @@ def naive_step(tiling: Tiling, seed: int, radius: float, strength: float) -> np.
             if seen.any():
                 weight = 1 / distance[seen]
                 step[v] = strength * (weight[:, None] * gap[seen]).sum(axis=0) / weight.sum()
-    noise = draws.uniform(seed, 1, index=np.arange(2 * tiling.free.sum())).reshape(-1, 2)
-    step[tiling.free] += (noise * 2 - 1) * 0.04 * radius
+    noise = draws.uniform(seed, 1, index=np.arange(2 * tiling.loose.sum())).reshape(-1, 2)
+    step[tiling.loose] += (noise * 2 - 1) * 0.04 * radius
     return step
 
 
 def test_vertices_are_drawn_as_the_paper_says_where_nothing_is_in_the_way() -> None:
     tiling = tiling_of(40, 2, size=(300, 400))
-    loose = replace(tiling, corner=tiling.corner[:0], carrier=tiling.carrier[:0], corner_share=tiling.corner_share[:0])
+    loose = replace(tiling, corner=tiling.corner[:0])
     graph = refined(loose, 7, radius=25.0, iterations=1, strength=0.6)
     step = naive_step(tiling, 7, 25.0, 0.6)
     assert np.hypot(*step.T).max() > 5
@@ -91,7 +91,7 @@ def test_repetition_goes() -> None:
     graph = refined(tiling, 3, radius=25.0, iterations=4, strength=0.5)
     tiles = len(graph.vertices) // len(tiling.patch.graph.vertices)
     assert tiles > 1
-    moved = (graph.vertices - tiling.graph.vertices)[tiling.free].reshape(tiles, -1, 2)
+    moved = (graph.vertices - tiling.graph.vertices)[tiling.loose].reshape(tiles, -1, 2)
     assert np.hypot(*(moved[0] - moved[1]).T).mean() > 3
 
 

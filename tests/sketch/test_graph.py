@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from texloom.sketch.bezier import pieces, points_at
+from texloom.sketch.cells import _walks
 from texloom.sketch.crossing import meetings
 from texloom.sketch.graph import CellGraph, straight
 
@@ -84,6 +85,39 @@ def test_loose_ends_and_trees_are_no_cells():
     tree = straight((50.0, 50.0), np.array([[0.0, 0], [20, 3], [31, 17], [40, 1]]), np.array([[0, 1], [1, 2], [1, 3]]))
     assert len(tree.cells()) == 0
     assert len(straight((5.0, 5.0), np.zeros((0, 2)), np.zeros((0, 2), np.int64)).cells()) == 0
+
+
+@given(st.permutations(range(24)))
+def test_walks_are_the_cycles_in_order_of_their_lowest_members(following):
+    start, member = _walks(np.array(following))
+    cycles = []
+    for first in range(24):
+        if not any(first in cycle for cycle in cycles):
+            cycles.append([first])
+            while following[cycles[-1][-1]] != first:
+                cycles[-1].append(following[cycles[-1][-1]])
+    found = [member[a:b].tolist() for a, b in zip(start[:-1], start[1:], strict=True)]
+    assert found == cycles and start[-1] == 24
+
+
+def test_some_cells_are_those_alone():
+    cells = torus(1).cells()
+    which = np.array([20, 3, 4])
+    some = cells.some(which)
+    assert len(some) == 3
+    for number, cell in enumerate(which):
+        walk = cells.halfedge[cells.start[cell] : cells.start[cell + 1]]
+        np.testing.assert_array_equal(some.halfedge[some.cell == number], walk)
+    np.testing.assert_array_equal(some.centroid, cells.centroid[which])
+    assert len(cells.some(which[:0])) == 0
+
+
+def test_a_part_of_a_graph_has_the_chords_of_its_edges():
+    graph, edges = torus(2), np.array([50, 7, 8])
+    chords = graph.part(edges).flattened(0.1, margin=5.0)
+    whole = graph.flattened(0.1, margin=5.0)
+    for number, edge in enumerate(edges):
+        np.testing.assert_array_equal(chords.start[chords.edge == number], whole.start[whole.edge == edge])
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -7,7 +7,7 @@ import pytest
 
 from tests.sketch.drawn import voronoi
 from texloom.kernels.launch import thread_count, use
-from texloom.sketch.filling.maps import FeatureMaps, changed, feature_maps, redraw
+from texloom.sketch.filling.maps import FeatureMaps, _edges_within, changed, feature_maps, redraw
 from texloom.sketch.filling.outlines import outlines
 from texloom.sketch.graph import CellGraph, straight
 from texloom.sketch.random import random_cells
@@ -111,6 +111,17 @@ def test_a_window_around_a_moved_vertex_gives_the_whole_map(graph: CellGraph):
     anew = feature_maps(after, cells, blur=maps.blur)
     for field in fields(FeatureMaps):
         np.testing.assert_allclose(getattr(maps, field.name), getattr(anew, field.name), atol=1e-6)
+
+
+@pytest.mark.parametrize("graph", GRAPHS[:2])
+def test_edges_within_a_rectangle_are_those_with_a_copy_there(graph: CellGraph):
+    bounds = np.array([-22.0, 11.0]), np.array([9.0, 37.0])
+    copies = [np.array([r, c]) * graph.size for r in range(-2, 3) for c in range(-2, 3) if graph.wrap or r == c == 0]
+    low, high = graph.curves.min(axis=1), graph.curves.max(axis=1)
+    there = [(((high + copy) >= bounds[0]) & ((low + copy) <= bounds[1])).all(axis=1) for copy in copies]
+    expected = np.flatnonzero(np.any(there, axis=0))
+    assert 0 < len(expected) < len(graph.edges)
+    np.testing.assert_array_equal(_edges_within(graph, bounds), expected)
 
 
 def test_nothing_moved_changes_nothing():

@@ -123,9 +123,8 @@ def test_any_sketch_becomes_a_closed_torus(count: int, seed: int) -> None:
     assert not len(patch.graph.crossings()) and euler(patch.graph) == 0
     assert (patch.graph.degree > 0).all()
     np.testing.assert_array_equal(patch.web.loose, patch.web.strands.free)
-    corner = patch.web.corner
-    assert (np.linalg.det(np.diff(corner, axis=1)) > 0).all()
-    assert np.linalg.det(np.diff(corner, axis=1)).sum() / 2 == pytest.approx(np.prod(patch.graph.size))
+    assert (np.linalg.det(patch.web.sides) > 0).all()
+    assert np.linalg.det(patch.web.sides).sum() / 2 == pytest.approx(np.prod(patch.graph.size))
 
 
 def test_curves_that_part_at_a_sharp_angle_become_chords_and_others_stay() -> None:

@@ -57,47 +57,34 @@ def pull(
 
 
 @wp.func
-def turn(a: wp.vec2d, b: wp.vec2d, c: wp.vec2d) -> wp.float64:
-    """Twice the area of a triangle, positive as corners are listed."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+def turn(one: wp.vec2d, two: wp.vec2d) -> wp.float64:
+    """Twice the area of a triangle, given its sides from the first corner: positive as corners are listed."""
+    return one[0] * two[1] - one[1] * two[0]
 
 
 @wp.func
-def carried(
-    corner: wp.array(dtype=wp.vec2d),
-    carrier: wp.array(dtype=wp.vec2i),
-    share: wp.array(dtype=wp.float64),
-    by: wp.array(dtype=wp.vec2d),
-    k: int,
+def carry(
+    carrier: wp.array(dtype=wp.vec2i), share: wp.array(dtype=wp.float64), by: wp.array(dtype=wp.vec2d), p: int
 ) -> wp.vec2d:
-    """Where corner k is when its carriers have moved."""
-    return corner[k] + (wp.float64(1.0) - share[k]) * by[carrier[k][0]] + share[k] * by[carrier[k][1]]
+    """How far point p has moved with its carriers."""
+    return (wp.float64(1.0) - share[p]) * by[carrier[p][0]] + share[p] * by[carrier[p][1]]
 
 
 @wp.func
-def area_left(
-    corner: wp.array(dtype=wp.vec2d),
-    carrier: wp.array(dtype=wp.vec2i),
-    share: wp.array(dtype=wp.float64),
-    by: wp.array(dtype=wp.vec2d),
-    t: int,
-) -> wp.float64:
-    """What is left of a triangle's area when its carriers have moved, of what there was."""
-    a = carried(corner, carrier, share, by, 3 * t)
-    b = carried(corner, carrier, share, by, 3 * t + 1)
-    c = carried(corner, carrier, share, by, 3 * t + 2)
-    return turn(a, b, c) / turn(corner[3 * t], corner[3 * t + 1], corner[3 * t + 2])
+def area(sides: wp.mat22d, a: wp.vec2d, b: wp.vec2d, c: wp.vec2d) -> wp.float64:
+    """Twice the area of a triangle whose corners have moved, negative where it is turned over."""
+    return turn(sides[0] + b - a, sides[1] + c - a)
 
 
 @wp.func
 def name_carriers(
-    carrier: wp.array(dtype=wp.vec2i), named: wp.array(dtype=int), queue: wp.array(dtype=int), count: int, t: int
+    carrier: wp.array(dtype=wp.vec2i), named: wp.array(dtype=int), queue: wp.array(dtype=int), count: int, c: wp.vec3i
 ) -> int:
-    """Put a triangle's carriers on a list, each once; returns its length."""
+    """Put the carriers of a triangle's corners on a list, each once; returns its length."""
     length = int(count)
-    for k in range(3 * t, 3 * t + 3):
+    for k in range(3):
         for end in range(2):
-            v = carrier[k][end]
+            v = carrier[c[k]][end]
             if named[v] == 0:
                 named[v] = 1
                 queue[length] = v
@@ -141,9 +128,10 @@ def refine(
     radius: wp.float64,
     strength: wp.float64,
     noise: wp.array(dtype=wp.vec2d),  # iteration by iteration, for each loose vertex
-    corner: wp.array(dtype=wp.vec2d),  # three for each triangle
-    carrier: wp.array(dtype=wp.vec2i),  # the vertices that carry a corner
+    carrier: wp.array(dtype=wp.vec2i),  # the vertices that carry a point
     share: wp.array(dtype=wp.float64),  # of the second
+    corner: wp.array(dtype=wp.vec3i),  # points, for each triangle
+    sides: wp.array(dtype=wp.mat22d),  # from its first corner to the others, where nothing has moved; again and again
     least: wp.float64,  # area that a triangle keeps, of what there was
     halvings: int,
     before: wp.array(dtype=wp.vec2d),
@@ -151,6 +139,7 @@ def refine(
     tries: wp.array(dtype=int),
     named: wp.array(dtype=int),
     queue: wp.array(dtype=int),
+    carried: wp.array(dtype=wp.vec2d),  # displacement of every point
     suspects: wp.array(dtype=int),
     by: wp.array(dtype=wp.vec2d),  # displacement of every vertex
 ):
@@ -158,7 +147,6 @@ def refine(
 
     One thread: triangles that share a vertex wait for each other, and a launch costs more than a pass over them.
     """
-    triangles = corner.shape[0] // 3
     for iteration in range(iterations):
         for i in range(loose.shape[0]):
             v = loose[i]
@@ -176,18 +164,29 @@ def refine(
         while found > 0:
             found = int(0)
             doubtful = int(0)
-            for t in range(triangles):
-                left = area_left(corner, carrier, share, by, t)
-                if left < SUSPECT:
+            for p in range(carrier.shape[0]):
+                carried[p] = carry(carrier, share, by, p)
+            k = int(0)
+            for t in range(corner.shape[0]):
+                c = corner[t]
+                whole = turn(sides[k][0], sides[k][1])
+                left = area(sides[k], carried[c[0]], carried[c[1]], carried[c[2]])
+                k = wp.where(k + 1 < sides.shape[0], k + 1, 0)
+                if left < SUSPECT * whole:
                     suspects[doubtful] = t
                     doubtful = doubtful + 1
-                    if left < least:
-                        found = name_carriers(carrier, named, queue, found, t)
+                    if left < least * whole:
+                        found = name_carriers(carrier, named, queue, found, c)
             shorten(before, step, by, tries, named, queue, found, halvings)
             wrong = int(found)
             while wrong > 0:
                 wrong = int(0)
                 for i in range(doubtful):
-                    if area_left(corner, carrier, share, by, suspects[i]) < least:
-                        wrong = name_carriers(carrier, named, queue, wrong, suspects[i])
+                    side = sides[suspects[i] % sides.shape[0]]
+                    c = corner[suspects[i]]
+                    one = carry(carrier, share, by, c[0])
+                    two = carry(carrier, share, by, c[1])
+                    three = carry(carrier, share, by, c[2])
+                    if area(side, one, two, three) < least * turn(side[0], side[1]):
+                        wrong = name_carriers(carrier, named, queue, wrong, c)
                 shorten(before, step, by, tries, named, queue, wrong, halvings)

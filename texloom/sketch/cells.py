@@ -6,11 +6,13 @@ from typing import Protocol
 import numpy as np
 from jaxtyping import Bool, Float64, Int, Int32
 
-from texloom.sketch.bezier import points_at
+from texloom.kernels.cycles import list_cycles
+from texloom.kernels.launch import launch
 from texloom.sketch.crossing import cross
 
 _LEAST_AREA = 1e-6  # square texels: a walk around a tree has none, to rounding
 _SAME_ANGLE = 1e-7  # radians under which two edges leave a vertex side by side
+_BITS = 26  # of such an angle
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)  # exact to degree 9: moments of a cubic's area have degree 8
 
 
@@ -37,11 +39,25 @@ class Cells:
         """The cell of every entry of ``halfedge``."""
         return np.repeat(np.arange(len(self), dtype=np.int32), np.diff(self.start))
 
+    def some(self, which: Int[np.ndarray, "chosen"]) -> "Cells":
+        """Some of them, in that order."""
+        start, entry = some_rows(self.start, which)
+        return Cells(start, self.halfedge[entry], self.area[which], self.centroid[which])
+
     def of_halfedge(self, edges: int) -> Int32[np.ndarray, "halfedge"]:
         """The cell at the left of every half-edge of so many edges; -1 where there is none."""
         cell = np.full(2 * edges, -1, np.int32)
         cell[self.halfedge] = self.cell
         return cell
+
+
+def some_rows(
+    start: Int32[np.ndarray, "rows_plus_one"], which: Int[np.ndarray, "chosen"]
+) -> tuple[Int32[np.ndarray, "chosen_plus_one"], Int[np.ndarray, "entry"]]:
+    """Some of compressed rows: where each begins anew, and the entries they have."""
+    size = np.diff(start)[which]
+    begin = np.concatenate([[0], np.cumsum(size)]).astype(np.int32)
+    return begin, np.arange(begin[-1]) + np.repeat(start[which] - begin[:-1], size)
 
 
 class Graph(Protocol):
@@ -91,43 +107,55 @@ def measure(
     if not len(halfedge):
         return np.zeros(0), np.zeros((0, 2)), np.zeros(0, bool)
     opens, sizes = start[:-1], np.diff(start)
-    curves = _from_origin(curve)[halfedge]
-    step = curves[:, 3]
-    sums = np.cumsum(step, axis=0) - step
-    curves = curves + (sums - np.repeat(sums[opens], sizes, axis=0))[:, None]  # relative to the walk's first vertex
-    closed = np.abs(np.add.reduceat(step, opens)).max(axis=1) < 1e-6 * (1 + np.abs(vertices).max())
+    points = _planes(curve).take(halfedge, axis=2)
+    step = points[3].copy()
+    sums = np.cumsum(step, axis=1) - step
+    points += sums - np.repeat(sums[:, opens], sizes, axis=1)  # relative to the walk's first vertex
+    closed = np.abs(np.add.reduceat(step, opens, axis=1)).max(axis=0) < 1e-6 * (1 + np.abs(vertices).max())
 
-    area, moment = np.zeros(len(halfedge)), np.zeros((len(halfedge), 2))
-    velocity = 3 * np.diff(curves, axis=1)
+    area, moment = np.zeros(len(halfedge)), np.zeros((2, len(halfedge)))
+    velocity = 3 * np.diff(points, axis=0)
     for node, weight in zip((_NODES + 1) / 2, _WEIGHTS / 2, strict=True):
-        point = points_at(curves, np.full(len(curves), node))
-        run = velocity[:, 0] * (1 - node) ** 2 + velocity[:, 1] * 2 * node * (1 - node) + velocity[:, 2] * node**2
-        swept = cross(point, run)
+        point = _at(points, node)
+        run = velocity[0] * (1 - node) ** 2 + velocity[1] * 2 * node * (1 - node) + velocity[2] * node**2
+        swept = cross(point.T, run.T)
         area += weight / 2 * swept
-        moment += (weight / 3 * swept)[:, None] * point
-    area, moment = np.add.reduceat(area, opens), np.add.reduceat(moment, opens)
+        moment += weight / 3 * swept * point
+    area, moment = np.add.reduceat(area, opens), np.add.reduceat(moment, opens, axis=1)
     safe = np.where(np.abs(area) > 1e-12, area, np.inf)
-    return area, vertices[edges.ravel()[halfedge[opens]]] + moment / safe[:, None], closed
+    return area, vertices[edges.ravel()[halfedge[opens]]] + (moment / safe).T, closed
 
 
-def _from_origin(curve: Float64[np.ndarray, "edge 3 2"]) -> Float64[np.ndarray, "halfedge 4 2"]:
-    """Four points of every half-edge, the first at 0."""
-    forth = np.concatenate([np.zeros((len(curve), 1, 2)), curve], axis=1)
-    back = forth[:, ::-1] - forth[:, 3:]
-    return np.stack([forth, back], axis=1).reshape(-1, 4, 2)
+def _planes(curve: Float64[np.ndarray, "edge 3 2"]) -> Float64[np.ndarray, "4 2 halfedge"]:
+    """Four points of every half-edge, the first at 0: all rows, then all columns, of one point after the other."""
+    planes = np.zeros((4, 2, len(curve), 2))
+    planes[1:, :, :, 0] = curve.transpose(1, 2, 0)
+    planes[:, :, :, 1] = planes[::-1, :, :, 0] - planes[3:, :, :, 0]
+    return planes.reshape(4, 2, -1)
+
+
+def _at(points: Float64[np.ndarray, "4 2 n"], t: float) -> Float64[np.ndarray, "2 n"]:
+    """The point of every curve at one parameter."""
+    a, b, c, d = points
+    s = 1 - t
+    return s**3 * a + 3 * s**2 * t * b + 3 * s * t**2 * c + t**3 * d
 
 
 def _next(count: int, edges: np.ndarray, curve: np.ndarray) -> Int[np.ndarray, "halfedge"]:
     """The half-edge that follows each one around the face at its left: the next clockwise from its twin."""
-    return clockwise(edges.ravel(), _from_origin(curve))[np.arange(edges.size) ^ 1]
+    return clockwise(edges.ravel(), _planes(curve).transpose(2, 0, 1))[np.arange(edges.size) ^ 1]
 
 
 def clockwise(
     origin: Int[np.ndarray, "halfedge"], points: Float64[np.ndarray, "halfedge 4 2"]
 ) -> Int[np.ndarray, "halfedge"]:
     """The next half-edge clockwise around each one's origin, itself where it is alone; curves begin at 0."""
-    angle, turn = _leaving(points)
-    order = np.lexsort((turn, angle, origin))
+    tangent, angle = _leaving(points)
+    around = origin * 2.0**_BITS + angle
+    order = np.argsort(around, kind="stable")
+    if (np.diff(around[order]) == 0).any():  # side by side: those that turn less come first
+        on = _at(points.transpose(1, 2, 0), 0.25).T
+        order = np.lexsort((np.arctan2(cross(tangent, on), (tangent * on).sum(axis=1)), around))
     opens = np.flatnonzero(np.diff(origin[order], prepend=-1))
     before = np.roll(order, 1)
     before[opens] = order[np.append(opens, len(order))[1:] - 1]
@@ -136,28 +164,20 @@ def clockwise(
     return following
 
 
-def _leaving(points: Float64[np.ndarray, "halfedge 4 2"]) -> tuple[np.ndarray, np.ndarray]:
-    """The angle at which each half-edge leaves, and how it turns from there: what orders those side by side."""
+def _leaving(
+    points: Float64[np.ndarray, "halfedge 4 2"],
+) -> tuple[Float64[np.ndarray, "halfedge 2"], Float64[np.ndarray, "halfedge"]]:
+    """Where each half-edge leads to at first, and at which angle, a whole number of what counts as the same."""
     length = np.hypot(points[..., 0], points[..., 1])
     far = length > 1e-9 * np.maximum(length.max(axis=1), 1e-300)[:, None]
     tangent = points[np.arange(len(points)), far.argmax(axis=1)]
     angle = np.round(np.arctan2(tangent[:, 1], tangent[:, 0]) / _SAME_ANGLE)
     angle[angle <= -np.round(np.pi / _SAME_ANGLE)] *= -1
-    on = points_at(points, np.full(len(points), 0.25))
-    return angle, np.arctan2(cross(tangent, on), (tangent * on).sum(axis=1))
+    return tangent, angle
 
 
 def _walks(following: Int[np.ndarray, "halfedge"]) -> tuple[Int32[np.ndarray, "walks_plus_one"], np.ndarray]:
     """The cycles of a permutation in compressed rows, each from its lowest member."""
-    after, seen = following.tolist(), [False] * len(following)
-    start, walk = [0], []
-    for first in range(len(after)):
-        if seen[first]:
-            continue
-        at = first
-        while not seen[at]:
-            seen[at] = True
-            walk.append(at)
-            at = after[at]
-        start.append(len(walk))
-    return np.array(start, np.int32), np.array(walk, np.int32)
+    member, seen, opens = np.zeros((3, len(following)), np.int32)
+    launch(list_cycles, 1, inputs=[following.astype(np.int32)], outputs=[seen, opens, member])
+    return np.append(np.flatnonzero(opens), len(following)).astype(np.int32), member

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float32, Int32
+from jaxtyping import Float32, Float64, Int32
 
 from texloom.kernels import sketch_maps as kernels
 from texloom.kernels.launch import launch
@@ -95,8 +95,8 @@ def changed(maps: FeatureMaps, before: CellGraph, after: CellGraph, cells: Cells
     which = np.unique(beside)
     if not len(which):
         return slice(0, 0), slice(0, 0)
-    low, high = zip(*(outlines(graph, cells).box() for graph in (before, after)), strict=True)
-    low, high = np.minimum(*low)[which], np.maximum(*high)[which]
+    low, high = zip(*(outlines(graph, cells.some(which)).box() for graph in (before, after)), strict=True)
+    low, high = np.minimum(*low), np.maximum(*high)
     if maps.wrap:  # all beside the first, and that in the drawing
         aside = np.floor((low[0] + high[0]) / 2 / maps.shape) + np.rint(
             (low + high - low[0] - high[0]) / 2 / maps.shape
@@ -126,9 +126,11 @@ def _measure(maps: FeatureMaps, graph: CellGraph, cells: Cells, window: Window) 
 def _nearest(maps: FeatureMaps, graph: CellGraph, window: Window, widest: float) -> Int32[np.ndarray, "row column"]:
     """The nearest edge where none is further than ``widest``; returns the half-edge with the texel at its left."""
     first, last = (window[0].start, window[1].start), (window[0].stop, window[1].stop)
-    chords = graph.flattened(_TOLERANCE, margin=widest)
+    bounds = np.array(first) - widest, np.array(last) + widest
+    there = _edges_within(graph, bounds)
+    chords = graph.part(there).flattened(_TOLERANCE, margin=widest)
     low, high = np.minimum(chords.start, chords.end), np.maximum(chords.start, chords.end)
-    near = np.flatnonzero(np.all((high > np.array(first) - widest) & (low < np.array(last) + widest), axis=1))
+    near = np.flatnonzero(np.all((high > bounds[0]) & (low < bounds[1]), axis=1))
     ends = [end[near].astype(np.float32) for end in (chords.start, chords.end)]
     down, across = (-(-(stop - start) // _TILE) for start, stop in zip(first, last, strict=True))
     radius = np.hypot(*(ends[1] - ends[0]).T) / 2 + np.float32(1e-3)  # more than what is lost to rounding
@@ -136,10 +138,23 @@ def _nearest(maps: FeatureMaps, graph: CellGraph, window: Window, widest: float)
     lists = np.empty((1 + 3 * down * across) * len(near), np.int32)
     lists[: len(near)] = np.arange(len(near))
     halfedge = np.empty(maps.shape, np.int32)
-    inputs = [first, last, across, *ends, disc, chords.edge[near], lists]
+    inputs = [first, last, across, *ends, disc, there[chords.edge[near]], lists]
     outputs = [maps.nearest, maps.away, halfedge]
     launch(kernels.nearest_edges, down * across, inputs=inputs, outputs=outputs, grain=1)
     return halfedge[window]
+
+
+def _edges_within(
+    graph: CellGraph, bounds: tuple[Float64[np.ndarray, "2"], Float64[np.ndarray, "2"]]
+) -> Int32[np.ndarray, "near"]:
+    """The edges that may reach into a rectangle; on a torus with any of their copies."""
+    curves = graph.curves
+    low, high = curves.min(axis=1), curves.max(axis=1)
+    if graph.wrap:  # the first copy that is not before it
+        size = np.array(graph.size)
+        by = np.ceil((bounds[0] - high) / size) * size
+        low, high = low + by, high + by
+    return np.flatnonzero(np.all((high >= bounds[0]) & (low <= bounds[1]), axis=1)).astype(np.int32)
 
 
 def _around(

@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float32, Float64, Int32
 
 from texloom.kernels import sketch_cells as kernels
 from texloom.kernels.launch import launch
-from texloom.sketch.cells import Cells
+from texloom.sketch.cells import Cells, some_rows
 from texloom.sketch.filling.outlines import Outlines, outlines
 from texloom.sketch.graph import CellGraph
 
@@ -99,9 +99,7 @@ def _centred(
     rim = _rims(outline.start, outline.point.astype(np.float32), centre, bins)
     hidden = np.flatnonzero(_area(rim) < _SEEN * cells.area)
     if len(hidden):
-        size = np.diff(outline.start)[hidden]
-        start = np.concatenate([[0], np.cumsum(size)]).astype(np.int32)
-        entry = np.arange(start[-1]) + np.repeat(outline.start[hidden] - start[:-1], size)
+        start, entry = some_rows(outline.start, hidden)
         point = outline.point[entry].astype(np.float32)
         place, deep = np.empty((len(hidden), 2), np.float32), np.empty(len(hidden), np.float32)
         launch(kernels.deepest, len(hidden), inputs=[start, point, _PROBES], outputs=[place, deep], grain=4)

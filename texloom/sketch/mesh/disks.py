@@ -34,11 +34,11 @@ def refined(tiling: Tiling, seed: int, *, radius: float, iterations: int, streng
     noise = (noise.reshape(-1, 2) * 2 - 1) * (radius * _SHAKE)
     inputs = [iterations, places, loose, tiling.graph.size, tuple(cells.tolist()), origin, disc, middle]
     inputs += [(tiling.patch.joints + 0.5) * tiling.scale - 0.5, reach, radius, strength, noise]
-    inputs += [tiling.corner.reshape(-1, 2), tiling.carrier.reshape(-1, 2), tiling.corner_share.ravel()]
+    inputs += [tiling.carrier, tiling.share, tiling.corner, tiling.patch.web.sides * tiling.scale]
     before, step, by = (np.zeros_like(places) for _ in range(3))
     tries, named, queue = np.zeros((3, len(places)), np.int32)
-    suspects = np.zeros(len(tiling.corner), np.int32)
-    outputs = [before, step, tries, named, queue, suspects, by]
+    carried, suspects = np.zeros((len(tiling.carrier), 2)), np.zeros(len(tiling.corner), np.int32)
+    outputs = [before, step, tries, named, queue, carried, suspects, by]
     launch(refine, 1, inputs=[*inputs, _LEAST, _HALVINGS], outputs=outputs)
     return tiling.moved(by)
 

@@ -7,31 +7,31 @@ from jaxtyping import Bool, Float64, Int, Int32
 
 from texloom.sketch.graph import CellGraph
 from texloom.sketch.mesh.patch import Patch
-from texloom.sketch.mesh.strands import carry, head_period
+from texloom.sketch.mesh.strands import head_period
 
 
 @dataclass(frozen=True, eq=False)
 class Tiling:
     """A texture mesh before it is refined: on a torus with room for the texture, with what keeps it planar.
 
-    Arrays are those of the patch's strands and web, once for every tile.
+    Arrays are those of the patch's web, once for every tile.
     """
 
     graph: CellGraph
     patch: Patch
     scale: Float64[np.ndarray, "2"]  # texels of the texture in one of the sketch, along rows and columns
-    free: Bool[np.ndarray, "vertex"]
     loose: Bool[np.ndarray, "vertex"]
-    ends: Int32[np.ndarray, "edge 2"]
-    share: Float64[np.ndarray, "edge 2"]
-    corner: Float64[np.ndarray, "triangle 3 2"]
-    carrier: Int32[np.ndarray, "triangle 3 2"]
-    corner_share: Float64[np.ndarray, "triangle 3"]
+    carrier: Int32[np.ndarray, "point 2"]
+    share: Float64[np.ndarray, "point"]
+    corner: Int32[np.ndarray, "triangle 3"]
 
     def moved(self, by: Float64[np.ndarray, "vertex 2"]) -> CellGraph:
         """The graph with the ends of curves displaced and what lies between carried along."""
-        carried = carry(by, free=self.free, edges=self.graph.edges, ends=self.ends, share=self.share)
-        return self.graph.moved(self.graph.vertices + carried)
+        count = len(self.patch.graph.vertices)  # the first of every tile's points
+        tiles = len(by) // count
+        first, second = self.carrier.reshape(tiles, -1, 2)[:, :count].reshape(-1, 2).T
+        share = self.share.reshape(tiles, -1)[:, :count].reshape(-1, 1)
+        return self.graph.moved(self.graph.vertices + (by[first] * (1 - share) + by[second] * share))
 
 
 def tile(patch: Patch, size: tuple[int, int], *, scale: float, tileable: bool) -> Tiling:
@@ -49,8 +49,8 @@ def tile(patch: Patch, size: tuple[int, int], *, scale: float, tileable: bool) -
     def again(values: np.ndarray) -> np.ndarray:
         return np.tile(values, (tiles, *(1,) * (values.ndim - 1)))
 
-    def named(vertex: np.ndarray, period: np.ndarray) -> np.ndarray:
-        return _named(vertex, period, at, repeats, len(graph.vertices))
+    def named(part: np.ndarray, period: np.ndarray, count: int = len(graph.vertices)) -> np.ndarray:
+        return _named(part, period, at, repeats, count)
 
     vertices = (graph.vertices + 0.5) * stretch - 0.5
     size_of_one = np.array(graph.size) * stretch
@@ -61,30 +61,27 @@ def tile(patch: Patch, size: tuple[int, int], *, scale: float, tileable: bool) -
         CellGraph((rows, columns), places, named(graph.edges, on_edges), again(graph.curve * stretch), True),
         patch,
         stretch,
-        free=again(web.strands.free),
         loose=again(web.loose),
-        ends=named(web.strands.ends, web.strands.period),
-        share=again(web.strands.share),
-        corner=again((web.corner + 0.5) * stretch - 0.5),
-        carrier=named(web.carrier, web.period),
-        corner_share=again(web.share),
+        carrier=named(web.carrier, web.carrier_period),
+        share=again(web.share),
+        corner=named(web.corner, web.corner_period, len(web.share)),
     )
 
 
 def _named(
-    vertex: Int[np.ndarray, "*shape"],
+    part: Int[np.ndarray, "*shape"],
     period: Int[np.ndarray, "*shape 2"],
     at: Int[np.ndarray, "tile 2"],
     repeats: Int[np.ndarray, "2"],
     count: int,
 ) -> Int32[np.ndarray, "..."]:
-    """For every tile the vertices meant by those of the patch, ``period`` copies away."""
-    vertex_of = vertex.ravel()
-    names = vertex_of + (np.arange(len(at)) * count)[:, None]
-    away = np.flatnonzero(period.reshape(-1, 2).any(axis=1))
-    beside = (at[:, None] + period.reshape(-1, 2)[away]) % repeats
-    names[:, away] = vertex_of[away] + (beside @ np.array([repeats[1], 1])) * count
-    return names.reshape(-1, *vertex.shape[1:]).astype(np.int32)
+    """For every tile the vertices, or other parts, meant by those of the patch's ``count``, ``period`` copies away."""
+    own, beyond = part.ravel(), period.reshape(-1, 2)
+    names = own.astype(np.int32) + (np.arange(len(at), dtype=np.int32) * count)[:, None]
+    away = np.flatnonzero(beyond.any(axis=1))
+    beside = (at[:, None] + beyond[away]) % repeats
+    names[:, away] = own[away] + (beside @ np.array([repeats[1], 1])) * count
+    return names.reshape(-1, *part.shape[1:])
 
 
 def on_plane(graph: CellGraph, size: tuple[float, float], widest: float) -> CellGraph:
@@ -93,33 +90,51 @@ def on_plane(graph: CellGraph, size: tuple[float, float], widest: float) -> Cell
     So cells no wider that reach into the texture are whole; beyond, edges may end anywhere.
     """
     period, count = np.array(graph.size), len(graph.vertices)
-    low, high = -0.5 - widest, np.array(size) - 0.5 + widest
     along = graph.curve[:, 2]
     most = np.ceil((widest + np.abs(along).max(axis=0, initial=0)) / period).astype(np.int64)
-    spans = 2 * most + 1
-    copies = np.stack(np.divmod(np.arange(spans.prod()), spans[1]), axis=1) - most
     home = -np.floor((graph.vertices + 0.5) / period).astype(np.int64)
     tails, heads = graph.edges.T
     places = graph.vertices + home * period
-    starts = places[tails] + (copies * period)[:, None]
-    copy, edge = np.nonzero(_within(starts, low, high) | _within(starts + along, low, high))
+    starts = places[tails]
+    bounds = -0.5 - widest, np.array(size) - 0.5 + widest
+    shifts = [np.arange(-copies, copies + 1) * side for copies, side in zip(most, period, strict=True)]
+    copy, edge = np.divmod(np.flatnonzero(_reaching(starts, along, shifts, bounds)), max(len(along), 1))
 
     # Vertices by the copy they lie on: heads perhaps one further out
-    beyond = home[tails] + head_period(graph) - home[heads]
+    beyond = np.rint((starts + along - places[heads]) / period).astype(np.int64)
     further = int(np.abs(beyond).max(initial=0))
-    wide = spans + 2 * further
-    on_copy = np.stack([copies[copy], copies[copy] + beyond[edge]], axis=1) + most + further
-    names = (on_copy @ np.array([wide[1], 1])) * count + graph.edges[edge]
-    used = np.zeros(int(wide.prod()) * count, bool)
+    row, column = np.divmod(copy, 2 * most[1] + 1)
+    wide = 2 * (most + further) + 1
+    of_tail = (row + further) * wide[1] + column + further
+    of_head = of_tail + (beyond @ np.array([wide[1], 1]))[edge]
+    names = np.stack([of_tail, of_head], axis=1) * count + graph.edges[edge]
+    kept, edges = _numbered(names, int(wide.prod()) * count)
+    kept_copy, vertex = np.divmod(kept, count)
+    shift = np.stack(np.divmod(kept_copy, wide[1]), axis=1) - most - further
+    sides = float(size[0]), float(size[1])
+    return CellGraph(sides, places[vertex] + shift * period, edges, graph.curve[edge])
+
+
+def _reaching(
+    start: Float64[np.ndarray, "edge 2"],
+    along: Float64[np.ndarray, "edge 2"],
+    shifts: list[np.ndarray],
+    bounds: tuple[float, Float64[np.ndarray, "2"]],
+) -> Bool[np.ndarray, "row_copy column_copy edge"]:
+    """Which copies of edges have an end within bounds, shifted by so many texels along rows and columns."""
+    inside = []
+    for axis, by in enumerate(shifts):
+        first = start[:, axis] + by[:, None]
+        inside.append([(end > bounds[0]) & (end < bounds[1][axis]) for end in (first, first + along[:, axis])])
+    rows, columns = inside
+    return (rows[0][:, None] & columns[0]) | (rows[1][:, None] & columns[1])
+
+
+def _numbered(names: Int[np.ndarray, "n 2"], count: int) -> tuple[Int[np.ndarray, "kept"], Int32[np.ndarray, "n 2"]]:
+    """Those of so many names that occur, in order, and for every name its place among them."""
+    used = np.zeros(count, bool)
     used[names] = True
     kept = np.flatnonzero(used)
-    shift = np.stack(np.divmod(kept // count, wide[1]), axis=1) - most - further
-    edges = (np.cumsum(used) - 1)[names].astype(np.int32)
-    return CellGraph((float(size[0]), float(size[1])), places[kept % count] + shift * period, edges, graph.curve[edge])
-
-
-def _within(
-    places: Float64[np.ndarray, "copy edge 2"], low: float, high: Float64[np.ndarray, "2"]
-) -> Bool[np.ndarray, "copy edge"]:
-    rows, columns = places[..., 0], places[..., 1]
-    return (rows > low) & (rows < high[0]) & (columns > low) & (columns < high[1])
+    place = np.empty(count, np.int32)
+    place[kept] = np.arange(len(kept))
+    return kept, place[names]

@@ -23,18 +23,20 @@ _THIN = 1e-6  # square texels under which a triangle says nothing
 class Web:
     """A graph on a torus and a triangulation of all its chords, each point of which the ends of its curve carry along.
 
-    A corner of a triangle is moved by (1 - share) times its first carrier's displacement plus share times the second's.
-    A map of the torus that is linear on triangles and turns none over is one to one: then no edges cross, and no
-    cell has flipped.
+    A point is moved by (1 - share) times its first carrier's displacement plus share times the second's; vertices are
+    the first of the points. A map of the torus that is linear on triangles and turns none over is one to one: then no
+    edges cross, and no cell has flipped.
     """
 
     graph: CellGraph
     strands: Strands
     loose: Bool[np.ndarray, "vertex"]  # the ends of curves that may be displaced
-    corner: Float64[np.ndarray, "triangle 3 2"]  # places in one piece, perhaps beyond the border
-    carrier: Int32[np.ndarray, "triangle 3 2"]  # vertices
-    period: Int32[np.ndarray, "triangle 3 2 2"]  # the copy of each carrier
-    share: Float64[np.ndarray, "triangle 3"]
+    carrier: Int32[np.ndarray, "point 2"]  # vertices
+    carrier_period: Int32[np.ndarray, "point 2 2"]  # the copy of each carrier
+    share: Float64[np.ndarray, "point"]
+    corner: Int32[np.ndarray, "triangle 3"]  # points
+    corner_period: Int32[np.ndarray, "triangle 3 2"]  # the copy of each corner
+    sides: Float64[np.ndarray, "triangle 2 2"]  # from the first corner to the others
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,19 +70,53 @@ def web(graph: CellGraph) -> Web:
     runs = strands(graph)
     loose = runs.free.copy()
     loose[runs.ends[points.along[missing]]] = False
-    flat = (place[triangle] + period * size, points.edge[triangle], points.on_edge[triangle], period)
-    corner, edge, t, period = map(np.concatenate, zip(flat, _wedges(graph), strict=True))
-    wide = cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) > _THIN
-    corner, edge, t, period = corner[wide], edge[wide], t[wide], period[wide]
-    share = runs.share[edge, 0] * (1 - t) + runs.share[edge, 1] * t
-    copies = (period[:, :, None] + runs.period[edge]).astype(np.int32)
-    return Web(graph, runs, loose, corner, runs.ends[edge], copies, share)
+    return _carried(graph, runs, loose, points=points, triangle=triangle, period=period)
 
 
-def _wedges(graph: CellGraph) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _carried(
+    graph: CellGraph,
+    runs: Strands,
+    loose: Bool[np.ndarray, "vertex"],
+    *,
+    points: _Points,
+    triangle: Int[np.ndarray, "triangle 3"],
+    period: Int[np.ndarray, "triangle 3 2"],
+) -> Web:
+    """The web of triangles between chords, with those between curves at a vertex."""
+    wedge, beside = _wedges(graph)
+    corner, period = np.concatenate([triangle, len(points.edge) + wedge]), np.concatenate([period, beside])
+    edge = np.concatenate([points.edge, np.repeat(np.arange(len(graph.edges)), 4)])
+    t = np.concatenate([points.on_edge, np.tile([0, 1 / 3, 2 / 3, 1], len(graph.edges))])
+    curves, size, vertices = graph.curves, np.array(graph.size), len(graph.vertices)
+    place = np.concatenate([points_at(curves[points.edge], points.on_edge), curves.reshape(-1, 2)])
+    at = place[corner] + period * size
+    sides = at[:, 1:] - at[:, :1]
+    wide = cross(sides[:, 0], sides[:, 1]) > _THIN
+    corner, period = corner[wide], period[wide]
+
+    # On edges vertices may lie on another copy than the one they have their name from
+    aside = np.zeros(place.shape, np.int64)
+    aside[:vertices] = np.rint((place[:vertices] - graph.vertices) / size)
+    used = np.union1d(np.arange(vertices), corner)
+    edge, t = edge[used], t[used]
+    return Web(
+        graph,
+        runs,
+        loose,
+        runs.ends[edge],
+        (runs.period[edge] - aside[used, None]).astype(np.int32),
+        runs.share[edge, 0] * (1 - t) + runs.share[edge, 1] * t,
+        np.searchsorted(used, corner).astype(np.int32),
+        (period + aside[corner]).astype(np.int32),
+        sides[wide],
+    )
+
+
+def _wedges(graph: CellGraph) -> tuple[Int[np.ndarray, "wedge 3"], Int[np.ndarray, "wedge 3 2"]]:
     """Triangles from a vertex to the control points of curves at a sharp angle there, that their order may last.
 
-    Their corners, and of each the edge, the parameter at which the edge's ends carry it, and the copy of its tail.
+    Their corners, of the four points of every curve, and the copy of each; the edge's ends carry a control point as
+    what lies a third along.
     """
     halfedge = np.arange(2 * len(graph.edges))
     edge, back = halfedge // 2, halfedge % 2
@@ -93,13 +129,9 @@ def _wedges(graph: CellGraph) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nd
     sharp = (way[order] * way[following]).sum(axis=1) > 0
     curved = (bend(graph.curves) > _FLAT)[edge]
     one, two = (half[sharp & (curved[order] | curved[following])] for half in (order, following))
-    at = graph.vertices[origin[one]]
-    t = np.where(back == 0, 1 / 3, 2 / 3)
     copy = -back[:, None] * head_period(graph)[edge]
     return (
-        np.stack([at, at + way[one], at + way[two]], axis=1),
-        edge[np.stack([one, one, two], axis=1)],
-        np.stack([back[one].astype(np.float64), t[one], t[two]], axis=1),
+        np.stack([4 * edge[one] + 3 * back[one], 4 * edge[one] + 1 + back[one], 4 * edge[two] + 1 + back[two]], axis=1),
         np.stack([copy[one], copy[one], copy[two]], axis=1),
     )
 
