@@ -93,6 +93,12 @@ def launch(kernel: Any, count: int, *, inputs: Sequence[Any], outputs: Sequence[
     parallel_map(run, len(bounds) - 1)
 
 
+class Lasting(dict[str, Any]):
+    """The fields of a struct that launch after launch is given: the same arrays, shared with the CPU once."""
+
+    view: Any = None
+
+
 class Repeated:
     """A kernel launched again and again on the same arrays, where a launch each would cost more than its work.
 
@@ -135,12 +141,17 @@ def _view(declared: Any, value: Any, name: str, device: str) -> Any:
     if isinstance(value, np.ndarray):
         assert value.flags.c_contiguous, f"{name}: kernels take C-contiguous arrays"
         return wp.array(value, dtype=declared.dtype, copy=False, device=device)
-    if isinstance(value, Mapping):
-        struct = declared()
-        for field, part in value.items():
-            setattr(struct, field, _view(declared.vars[field].type, part, f"{name}.{field}", device))
-        return struct
-    return value
+    if not isinstance(value, Mapping):
+        return value
+    lasts = isinstance(value, Lasting) and device == "cpu"
+    if lasts and value.view is not None:
+        return value.view
+    struct = declared()
+    for field, part in value.items():
+        setattr(struct, field, _view(declared.vars[field].type, part, f"{name}.{field}", device))
+    if lasts:
+        value.view = struct
+    return struct
 
 
 def _launch_on_device(kernel: Any, count: int, inputs: Sequence[Any], outputs: Sequence[Any]) -> None:

@@ -156,14 +156,14 @@ class Design:
         Raises: ParameterError, if edges would cross or a cell turn over.
         """
         graph = self.graph.moved(vertices)
-        flipped = graph.flipped(self.cells)
-        if flipped.any():
-            raise ParameterError(f"{np.count_nonzero(flipped)} cells would turn over: move their vertices less far")
+        cells = again(graph, self.cells)
+        flipped = np.count_nonzero(cells.area <= 0)
+        if flipped:
+            raise ParameterError(f"{flipped} cells would turn over: move their vertices less far")
         crossed = _newly_crossed(self.graph, graph)
         if crossed:
             raise ParameterError(f"{crossed} pairs of edges would cross: move their vertices less far")
         window = changed(self.maps, self.graph, graph, self.cells)
-        cells = again(graph, self.cells)
         maps, start, canvas = _copy(self.maps), _copy(self.start), _copy(self.canvas)
         redraw(maps, graph, cells, window=window)
         shapes = cell_shapes(graph, cells)
@@ -187,7 +187,7 @@ def _newly_crossed(before: CellGraph, after: CellGraph) -> int:
     if after.wrap and ((first < 0) | (last > after.size)).any():
         near[:] = True
     met = [
-        {tuple(pair) for pair in replace(graph, edges=graph.edges[near], curve=graph.curve[near]).crossings().tolist()}
+        {tuple(pair) for pair in graph.part(near).crossings().tolist()}
         for graph in (before, after)
     ]
     return len(met[1] - met[0])

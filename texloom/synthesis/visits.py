@@ -9,7 +9,7 @@ from jaxtyping import Float32, Int32, UInt8
 from texloom.arrays import Image, fours
 from texloom.domain.neighbourhoods import Neighbourhoods, Stencils
 from texloom.kernels.correction import find_sources, show_sources, visit_in_order
-from texloom.kernels.launch import launch
+from texloom.kernels.launch import Lasting, launch
 from texloom.search.window_tree import WindowTree
 from texloom.synthesis.canvas import Canvas
 
@@ -62,18 +62,22 @@ class Visits:
         self.guide, self.canvas, self._kind = guide, canvas, kind
         self.cost = np.zeros(len(around.sites), np.float32)  # mean squared difference at the last visit
         self._samples = everything if samples is None else samples
-        self._around = {
-            "samples": self._samples,
-            "sites": stencils.sites,
-            "weights": np.ones((1, 1, 1), np.float32) if stencils.weights is None else stencils.weights,
-            "offset": stencils.offset,
-            "near": around.sites,
-            "near_offset": around.offset,
-            "turned": np.zeros((1, 1), np.float32) if around.turn is None else around.turn,
-        }
+        self._around = Lasting(
+            {
+                "samples": self._samples,
+                "sites": stencils.sites,
+                "weights": np.ones((1, 1, 1), np.float32) if stencils.weights is None else stencils.weights,
+                "offset": stencils.offset,
+                "near": around.sites,
+                "near_offset": around.offset,
+                "turned": np.zeros((1, 1), np.float32) if around.turn is None else around.turn,
+            }
+        )
+        self._exemplar = Lasting(guide.as_exemplar)
         self._visited = np.zeros(len(around.sites), np.int32)
         self._changed = np.zeros(len(canvas.label), np.int32)
         self._now = 0
+        self._room: Lasting | None = None
 
     @property
     def mean_cost(self) -> float:
@@ -87,14 +91,14 @@ class Visits:
         launch(
             find_sources,
             len(chosen),
-            inputs=[chosen, self._around, self._canvas, self._visited, self.guide.as_exemplar, self._tree],
+            inputs=[chosen, self._around, self._canvas, self._visited, self._exemplar, self._tree],
             outputs=[desk, self.cost],
-            grain=1024,
+            grain=64,
         )
         launch(
             show_sources,
             len(chosen),
-            inputs=[chosen, self._now, self._around, self.guide.as_exemplar, desk],
+            inputs=[chosen, self._now, self._around, self._exemplar, desk],
             outputs=[self._visited, self._canvas],
             grain=4096,
         )
@@ -105,35 +109,34 @@ class Visits:
         launch(
             visit_in_order,
             1,
-            inputs=[chosen, self._now, self._around, self.guide.as_exemplar, self._tree, self._desk(1)],
+            inputs=[chosen, self._now, self._around, self._exemplar, self._tree, self._desk(1)],
             outputs=[self._visited, self._canvas, self.cost],
         )
 
     @cached_property
-    def _canvas(self) -> dict[str, np.ndarray]:
+    def _canvas(self) -> Lasting:
         canvas, kind = self.canvas, {} if self._kind is None else {"kind": self._kind}
-        return kind | {
-            "position": canvas.position,
-            "turn": canvas.turn,
-            "colour": fours(canvas.colour),
-            "label": canvas.label,
-            "changed": self._changed,
-        }
+        shown = {"position": canvas.position, "turn": canvas.turn, "colour": fours(canvas.colour)}
+        return Lasting(kind | shown | {"label": canvas.label, "changed": self._changed})
 
     @cached_property
-    def _tree(self) -> dict[str, np.ndarray]:
+    def _tree(self) -> Lasting:
         """Of no windows, where none is asked."""
-        return NO_TREE if self.guide.tree is None else self.guide.tree.arrays
+        return Lasting(NO_TREE if self.guide.tree is None else self.guide.tree.arrays)
 
-    def _desk(self, rows: int) -> dict[str, np.ndarray]:
-        """Room for so many neighbourhoods at work."""
-        tree, samples, channels = self.guide.tree, len(self._samples), self.guide.image.shape[2]
-        return {
-            "seen": fours(np.empty((rows, samples, channels), np.float32)),
-            "known": np.empty((rows, samples), np.float32),
-            "query": fours(np.empty((rows, 4 if tree is None else tree.axes.shape[2]), np.float32)),
-            "nearest": np.empty((rows, self.guide.nearest), np.int32),
-            "distance": np.empty((rows, self.guide.nearest), np.float32),
-            "tried": np.empty((rows, self.guide.candidates, 3), np.float32),
-            "found": np.empty((rows, 3), np.float32),
-        }
+    def _desk(self, rows: int) -> Lasting:
+        """Room for so many neighbourhoods at work, or more."""
+        if self._room is None or len(self._room["found"]) < rows:
+            tree, samples, channels = self.guide.tree, len(self._samples), self.guide.image.shape[2]
+            self._room = Lasting(
+                {
+                    "seen": fours(np.empty((rows, samples, channels), np.float32)),
+                    "known": np.empty((rows, samples), np.float32),
+                    "query": fours(np.empty((rows, 4 if tree is None else tree.axes.shape[2]), np.float32)),
+                    "nearest": np.empty((rows, self.guide.nearest), np.int32),
+                    "distance": np.empty((rows, self.guide.nearest), np.float32),
+                    "tried": np.empty((rows, self.guide.candidates, 3), np.float32),
+                    "found": np.empty((rows, 3), np.float32),
+                }
+            )
+        return self._room

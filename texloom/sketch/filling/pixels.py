@@ -55,7 +55,7 @@ class PixelSynthesis:
         similar = np.zeros((*image.shape[:2], 0, 2), np.int32)
         if self.alike:
             similar = most_alike(image, self.alike, usable=exemplar.mask)
-        return Guide(image, usable, similar, axis=_angles(maps) if self.turned else None)
+        return Guide(image, usable, similar, axis=_angles(maps.toward) if self.turned else None)
 
     def run(self, guide: Guide, maps: FeatureMaps, start: Start, kinds: Int32[np.ndarray, "cell"]) -> Canvas:
         """The texture, in the order of its rows."""
@@ -85,7 +85,7 @@ class PixelSynthesis:
         if self.passes and guide.axis is not None:
             near = inside[maps.closeness[window].ravel() > 0]
             row, column = np.rint(canvas.position[near]).astype(np.int32).T
-            canvas.turn[near] = guide.axis[row, column] - _angles(maps).ravel()[near]
+            canvas.turn[near] = guide.axis[row, column] - _angles(maps.toward.reshape(-1, 2)[near])
         canvas.look(guide.image, inside)
         chosen = sites[maps.away[window] <= maps.reach + _BESIDE]
         around = grid.neighbourhoods(chosen, self.window // 2)
@@ -102,6 +102,6 @@ def _regions(maps: FeatureMaps, kinds: Int32[np.ndarray, "cell"]) -> UInt8[np.nd
     return np.where(maps.closeness > 0, np.uint8(_LINE), of_cell[maps.cell])
 
 
-def _angles(maps: FeatureMaps) -> Float32[np.ndarray, "row column"]:
-    """The angle of the orientation feature: R(angle) takes [1, 0] to its direction."""
-    return np.arctan2(-maps.toward[..., 1], maps.toward[..., 0])
+def _angles(toward: Float32[np.ndarray, "*shape 2"]) -> Float32[np.ndarray, "*shape"]:
+    """The angle of an orientation feature: R(angle) takes [1, 0] to its direction."""
+    return np.arctan2(-toward[..., 1], toward[..., 0])
