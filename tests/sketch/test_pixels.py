@@ -68,10 +68,13 @@ def test_passes_fit_better_and_better(design, turned):
 
 
 @pytest.mark.parametrize("design", [base, torus])
-def test_only_texels_near_lines_change_and_each_to_its_kind(design):
+def test_only_texels_near_lines_or_drawn_out_change_and_each_to_its_kind(design):
     one = design()
     canvas = run(one, PixelSynthesis(passes=3, alike=2))
-    near = one.maps.away.ravel() <= one.maps.reach + ZONE
+    rows, columns = one.maps.shape
+    bent, _ = one.start.drawn_out((slice(0, rows), slice(0, columns)), wrap=one.maps.wrap)
+    near = (one.maps.away.ravel() <= one.maps.reach + ZONE) | bent.ravel()
+    assert bent.any() and not near.all()
     differs = (canvas.position != one.start.position.reshape(-1, 2)).any(axis=1)
     assert not differs[~near].any() and 0.1 < differs[near].mean() < 1
     np.testing.assert_array_equal(canvas.turn[~near], one.start.turn.ravel()[~near])

@@ -179,3 +179,40 @@ def test_what_suits_a_sample_follows_from_the_detail_in_its_cells(name, inside):
     exemplar = read_exemplar(DATA / "exemplars" / f"{name}.png")
     graph = detect(exemplar)
     assert best_inside(match_image(exemplar), feature_maps(graph, graph.cells())) == inside
+
+
+def laid(matrix: np.ndarray, rows: int = 30, columns: int = 40) -> Start:
+    """The sample shown through one linear map all over."""
+    place = np.stack(np.mgrid[:rows, :columns], axis=-1) @ np.array(matrix).T
+    even = np.ones((rows, columns), np.float32)
+    return Start(place.astype(np.float32), 0 * even, even)
+
+
+@pytest.mark.parametrize(
+    ("along", "across", "bent"),
+    [(1, 1, False), (0.8, 0.8, False), (3, 3, False), (1.4, 1, False), (1.6, 1, True), (0.5, 0.5, True), (-1, 1, True)],
+)
+@pytest.mark.parametrize("turn", [0.0, 0.7, -2.5])
+def test_what_is_stretched_or_enlarged_is_drawn_out(along: float, across: float, bent: bool, turn: float) -> None:
+    """Texels of the sample from one texel to the next, along a direction and across it, then turned."""
+    cosine, sine = np.cos(turn), np.sin(turn)
+    rotation = np.array([[cosine, sine], [-sine, cosine]])
+    lean = np.array([[np.cos(0.4), -np.sin(0.4)], [np.sin(0.4), np.cos(0.4)]])
+    start = laid(rotation @ lean @ np.diag([along, across]) @ lean.T)
+    window = slice(0, 30), slice(5, 25)
+    found, turns = start.drawn_out(window, wrap=False)
+    assert found.shape == (30, 20) and (found == bent).all()
+    if bent and along > 0:
+        np.testing.assert_allclose(np.cos(turns - turn), 1, atol=1e-4)
+    part, _ = start.drawn_out((slice(10, 11), slice(7, 8)), wrap=False)
+    assert part.shape == (1, 1) and part[0, 0] == bent
+
+
+def test_a_torus_is_looked_at_across_its_border() -> None:
+    start = laid(np.eye(2))
+    window = slice(0, 30), slice(0, 40)
+    assert not start.drawn_out(window, wrap=False)[0].any()
+    torn = start.drawn_out(window, wrap=True)[0]
+    assert torn[[0, -1], 1:-1].all() and torn[1:-1, [0, -1]].all() and not torn[1:-1, 1:-1].any()
+    one = start.position[:1, :1]
+    assert not Start(one, one[..., 0], one[..., 0]).drawn_out((slice(0, 1), slice(0, 0)), wrap=False)[0].any()

@@ -183,9 +183,9 @@ def _newly_crossed(before: CellGraph, after: CellGraph) -> int:
         return 0
     low, high = after.curves.min(axis=1), after.curves.max(axis=1)
     first, last = low[moved].min(axis=0), high[moved].max(axis=0)
-    near = ((high >= first) & (low <= last)).all(axis=1)
+    near = np.flatnonzero(((high >= first) & (low <= last)).all(axis=1))
     if after.wrap and ((first < 0) | (last > after.size)).any():
-        near[:] = True
+        near = np.arange(len(moved))
     met = [
         {tuple(pair) for pair in graph.part(near).crossings().tolist()}
         for graph in (before, after)

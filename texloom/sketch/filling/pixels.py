@@ -1,4 +1,4 @@
-"""The last step: texels near lines choose anew, their neighbourhoods turned as the lines run (§3.2, fig. 13).
+"""The last step: texels near lines, or drawn out, choose anew; neighbourhoods turn as lines do (§3.2, fig. 13).
 
 A neighbourhood of the sample is turned by its own orientation feature, one of the texture by its; what counts is the
 angle between the two, and that is a source's turn. So the texture's neighbourhoods stay upright, and only the sample's
@@ -29,7 +29,7 @@ _BESIDE = 3  # texels from lines where texels still choose
 
 @dataclass(frozen=True, kw_only=True)
 class PixelSynthesis:
-    """Every texel near a line takes the texel whose neighbourhood fits its own best, in ``passes``.
+    """Every texel near a line or drawn out takes the texel whose neighbourhood fits its own best, in ``passes``.
 
     Candidates are what the texels around continue and ``alike`` texels most like the own one; near lines only what lies
     near lines in the sample, elsewhere what lies in cells of the same kind. With ``turned`` texels near lines
@@ -82,12 +82,14 @@ class PixelSynthesis:
         inside = sites.ravel()
         canvas.position[inside] = start.position[window].reshape(-1, 2)
         canvas.turn[inside] = start.turn[window].ravel()
+        bent, turns = start.drawn_out(window, wrap=maps.wrap)
         if self.passes and guide.axis is not None:
+            canvas.turn[sites[bent]] = turns
             near = inside[maps.closeness[window].ravel() > 0]
             row, column = np.rint(canvas.position[near]).astype(np.int32).T
             canvas.turn[near] = guide.axis[row, column] - _angles(maps.toward.reshape(-1, 2)[near])
         canvas.look(guide.image, inside)
-        chosen = sites[maps.away[window] <= maps.reach + _BESIDE]
+        chosen = sites[bent | (maps.away[window] <= maps.reach + _BESIDE)]
         around = grid.neighbourhoods(chosen, self.window // 2)
         visits = Visits(guide, canvas, around, as_stencils(around), kind=_regions(maps, kinds).ravel())
         part = chosen // columns % 2 * 2 + chosen % columns % 2  # no two of one part are neighbours

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from jaxtyping import Float32, Float64
+from jaxtyping import Bool, Float32, Float64
 
 from texloom import draws
 from texloom.arrays import Image
@@ -17,6 +17,9 @@ from texloom.sources import SourceMap
 
 _RADIAL = 0.0, 1.0  # rims count as the square of the way to them
 _SCALE = -1.5, 2.5  # the same from three fifths of the way on
+
+_STRETCHED = 1.5  # times as much one way as the other,
+_ENLARGED = 5 / 3  # or in all: further than that what is shown looks drawn out
 
 _DETAIL = 2 / 3  # of the maps' blur
 _LEAST_DETAIL = 0.7  # texels
@@ -37,6 +40,31 @@ class Start:
         position = self.position.reshape(-1, 1, 2)
         turn, scale = self.turn.reshape(-1, 1), self.scale.reshape(-1, 1)
         return SourceMap(position, np.ones_like(turn), turn, scale)
+
+
+    def drawn_out(
+        self, window: Window, *, wrap: bool
+    ) -> tuple[Bool[np.ndarray, "row column"], Float32[np.ndarray, "bent"]]:
+        """Where in a window the sample is shown stretched or enlarged too far, and how it is turned at these places.
+
+        With the derivative M of positions, Q and R half the lengths of (M00 + M11, M10 - M01) and (M00 - M11,
+        M10 + M01): it shows the sample (Q + R) / (Q - R) times as stretched one way as the other, 1 / Q times as large.
+        """
+        (a, c), (b, d) = (np.moveaxis(self._slope(window, axis, wrap), 2, 0) for axis in (0, 1))
+        even, uneven = np.hypot(a + d, c - b), np.hypot(a - d, c + b)
+        bent = (even + uneven > _STRETCHED * np.abs(even - uneven)) | (even < 2 / _ENLARGED)
+        return bent, np.arctan2((b - c)[bent], (a + d)[bent])
+
+    def _slope(self, window: Window, axis: int, wrap: bool) -> Float32[np.ndarray, "row column 2"]:
+        """How positions change from texel to texel along an axis."""
+        side, texels = window[axis], self.turn.shape[axis]
+        before, after = (np.arange(side.start + step, side.stop + step) for step in (-1, 1))
+        if not wrap:
+            before, after = np.maximum(before, 0), np.minimum(after, texels - 1)
+        strip = self.position[:, window[1]] if axis == 0 else self.position[window[0]]
+        change = strip.take(after % texels, axis=axis) - strip.take(before % texels, axis=axis)
+        apart = np.maximum(after - before, 1).astype(np.float32)
+        return change / (apart[:, None, None] if axis == 0 else apart[:, None])
 
 
 @dataclass(frozen=True, kw_only=True)
