@@ -11,10 +11,12 @@ from benchmarks.clock import once
 from benchmarks.data import SEED
 from benchmarks.sketch_scenes import PAIRS, Picture, Rows, design_of, load_sample, load_sketch, mesh_of, shown
 from texloom.errors import TexloomError
+from texloom.metrics.score import score
 from texloom.output.image import encoded_picture
 from texloom.sketch.design import Design
 from texloom.sketch.filling.maps import FeatureMaps
 from texloom.sketch.filling.pixels import PixelSynthesis
+from texloom.sketch.filling.warp import Initialization
 from texloom.sketch.reading.read import read_sketch
 from texloom.sketch.sample import SketchSample
 from texloom.systems import sketch as published
@@ -73,6 +75,42 @@ def shapes(data: Path) -> Rows:
         rows[-1]["by chance"] = _apart(shown(ours), _elsewhere(ours).maps, sample, dark)
         print(f"  {rows[-1]}", flush=True)
     return rows
+
+
+def steps(data: Path) -> Rows:
+    """From the paper's method to ours, step by step: means over the pairs."""
+    kept: dict[str, list[list[float]]] = {}
+    for name, drawing in PAIRS.items():
+        sample, sketch = load_sample(data, name), load_sketch(data, drawing)
+        its, dark = encoded_picture(sample.exemplar.lead.image), _is_dark(sample)
+        for step, design in _from_the_papers(design_of(sketch, sample)).items():
+            picture = shown(design)
+            scores = score(its, picture)
+            found = [energy(picture) / energy(its), _apart(picture, design.maps, sample, dark)]
+            kept.setdefault(step, []).append(found + [scores.coherence, scores.completeness, scores.swd])
+        print(f"  {name}", flush=True)
+    columns = ("detail", "lines", "fit", "fit back", "swd")
+    means = {step: np.mean(found, axis=0).round(2).tolist() for step, found in kept.items()}
+    return [{"step": step} | dict(zip(columns, found, strict=True)) for step, found in means.items()]
+
+
+def _from_the_papers(ours: Design) -> dict[str, Design]:
+    """Designs with one more of our choices each, then with one of them taken back."""
+    sample = ours.sample
+    paper = published.design(ours.sketch, sample, ours.mesh, inside=sample.inside, seed=SEED)
+    alike = paper.changed(deal=ours.deal)
+    carried = alike.changed(initialization=Initialization(inside=sample.inside))
+    return {
+        "the paper's first image": paper.changed(pixels=PixelSynthesis(passes=0)),
+        "the paper: four passes": paper,
+        "+ cells much alike": alike,
+        "+ lines carried": carried,
+        "+ one pass only: the default": ours,
+        "the same, neighbourhoods upright": ours.changed(pixels=PixelSynthesis(turned=False)),
+        "no pass": ours.changed(pixels=PixelSynthesis(passes=0)),
+        "all cells by radial": ours.changed(initialization=Initialization(inside="radial")),
+        "all cells by scale": ours.changed(initialization=Initialization(inside="scale")),
+    }
 
 
 def _elsewhere(design: Design) -> Design:

@@ -186,10 +186,7 @@ def _newly_crossed(before: CellGraph, after: CellGraph) -> int:
     near = np.flatnonzero(((high >= first) & (low <= last)).all(axis=1))
     if after.wrap and ((first < 0) | (last > after.size)).any():
         near = np.arange(len(moved))
-    met = [
-        {tuple(pair) for pair in graph.part(near).crossings().tolist()}
-        for graph in (before, after)
-    ]
+    met = [{tuple(pair) for pair in graph.part(near).crossings().tolist()} for graph in (before, after)]
     return len(met[1] - met[0])
 
 

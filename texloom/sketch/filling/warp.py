@@ -41,7 +41,6 @@ class Start:
         turn, scale = self.turn.reshape(-1, 1), self.scale.reshape(-1, 1)
         return SourceMap(position, np.ones_like(turn), turn, scale)
 
-
     def drawn_out(
         self, window: Window, *, wrap: bool
     ) -> tuple[Bool[np.ndarray, "row column"], Float32[np.ndarray, "bent"]]:
