@@ -60,6 +60,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     rings = "".join(f'<circle cx="{x}" cy="{y}" r="30"/>' for x in range(20, 200, 35) for y in range(20, 200, 35))
     page = '<svg xmlns="http://www.w3.org/2000/svg" width="200" height="200" fill="none" stroke="black">{}</svg>'
     (folder / "rings.svg").write_text(page.format(rings))
+    (folder / "beside.svg").write_text(page.format('<path d="M-500 -500H-300V-300H-500Z M-400 -500V-300"/>'))
+    Image.fromarray(np.where(np.indices((SIDE, SIDE)).sum(axis=0) % 4, 255, 0).astype(np.uint8)).save(
+        folder / "comb.png"
+    )
     (folder / "empty.svg").write_text(page.format(""))
     faces = polygonise(ball((0, 0, 0), 1.0), low=np.full(3, -1.3), high=np.full(3, 1.3), step=0.3)
     write_obj(folder / "ball.obj", faces)
@@ -81,12 +85,13 @@ def pixels(path: Path) -> np.ndarray:
 
 def test_a_texture_and_all_that_is_told(folder: Path, capsys: Captured) -> None:
     words = ["--size", "90x70", "--json", "--sources", "{a.npz}", "--report", "{a.html}", "--threads", "2"]
-    assert run(folder, "sketch", "{cells.svg}", "{squares.png}", "-o", "{a.png}", *words) == 0
+    cells = ["--sample-sketch", "{grid.svg}"]
+    assert run(folder, "sketch", "{cells.svg}", "{squares.png}", "-o", "{a.png}", *cells, *words) == 0
     told = facts(capsys)
     assert told["size"] == [90, 70] and Image.open(folder / "a.png").size == (90, 70)
-    assert told["scale"] == pytest.approx(SQUARE / 20, rel=0.15) and told["mirrored"] is False
+    assert told["scale"] == pytest.approx(SQUARE / 20, rel=0.03) and told["mirrored"] is False
     assert 90 * 70 / SQUARE**2 < told["cells"] < 2 * 90 * 70 / SQUARE**2 and told["kinds"] == []  # some cut off
-    assert told["radius"] == pytest.approx(SQUARE / 4, rel=0.15)
+    assert told["radius"] == pytest.approx(SQUARE / 4, rel=0.03)
     assert {"read", "cells", "mesh", "maps", "start", "pixels", "write", "report"} < set(told["seconds"])
     assert Image.open(folder / "a.png").info["sketch"] == "cells.svg"
     assert "Lines between cells" in (folder / "a.html").read_text()
@@ -208,12 +213,18 @@ def test_mends_are_told_with_their_places(folder: Path, capsys: Captured) -> Non
         (["{cells.svg}", "{squares.png}", "{squares.png}", "--kinds", "{kinds.png}", "--pattern", "{halves.png}"],
          "--kinds kinds.png is for one sample, but of 2 each is a kind"),
         (["{cells.svg}", "{squares.png}", "{squares.png}", "--sample-sketch", "{grid.svg}"],
-         "--sample-sketch grid.svg: 1 drawings of cells for 2 samples: give one each, or none"),
+         "--sample-sketch grid.svg: drawings of cells: 1, samples: 2; give one each, or none"),
         (["{cells.svg}", "{squares.png}", "--mesh-only"], "bad.png: --mesh-only writes a drawing, name it .svg"),
         (["{cells.svg}", "{squares.png}", "--inside", "out"], "unknown inside 'out': choose radial or scale"),
         (["{cells.svg}", "{squares.png}", "--preset", "texton"], "unknown preset 'texton': choose sketch"),
         (["{cells.svg}", "{squares.png}", "--scale", "0"], "--scale 0"),
         (["{cells.svg}", "{squares.png}", "--radius", "-1"], "--radius -1: texels, 0 or more"),
+        (["{cells.svg}", "{squares.png}", "--radius", "inf"], "--radius inf: texels, 0 or more, and finite"),
+        (["{cells.svg}", "{squares.png}", "--scale", "inf"], "--scale inf"),
+        (["{cells.svg}", "{squares.png}", "--scale", "1e-9"], "at scale 1e-09, for a texture of 512×512: choose"),
+        (["{cells.svg}", "{squares.png}", "--scale", "1e9"], "choose a scale between 0.05 and 4.1e+02"),
+        (["{beside.svg}", "{squares.png}"], "beside.svg: nothing is drawn on the page of 200×200"),
+        (["{cells.svg}", "{squares.png}", "--mask", "{comb.png}"], "masked texels lie in each of the sample's"),
         (["{cells.svg}", "{squares.png}", "--size", "wide"], "--size 'wide' is not W or WxH"),
     ],
 )  # fmt: skip
@@ -261,7 +272,7 @@ def test_cells_are_carried_over_a_surface(folder: Path, method: str, capsys: Cap
         (["--method", "texton"], "is not for --method texton: leave it out"),
         (["--fuse", "{halves.png}"], "--fuse and --sketch"),
         (["--sketch", "{none.svg}"], "none.svg: no such file"),
-        (["--sample-sketch", "{grid.svg}", "--sample-sketch", "{grid.svg}"], "2 drawings of cells for 1 samples"),
+        (["--sample-sketch", "{grid.svg}", "--sample-sketch", "{grid.svg}"], "drawings of cells: 2, samples: 1"),
         (["--radius", "-1"], "--radius -1: texels, 0 or more"),
     ],
 )

@@ -204,7 +204,7 @@ def test_without_a_pattern_every_kind_is_shown():
 def test_a_texture_without_cells_is_one_error():
     ring = np.array([[2.0, 2.0], [2.0, 8.0], [8.0, 8.0]])
     lone = straight((60.0, 60.0), ring, np.array([[0, 1], [1, 2]]), wrap=True)
-    with pytest.raises(ParameterError, match="no cell of the sketch"):
+    with pytest.raises(ParameterError, match="no piece of the sketch goes on as closed cells"):
         _ = base().changed(sketch=lone).cells
 
 
@@ -228,3 +228,17 @@ def test_edges_that_would_cross_are_refused():
         except ParameterError:
             continue
     assert crossed == 0
+
+
+@pytest.mark.parametrize("shape", [(4, 4, 1), (4, 4, 4), (0, 4, 3)])
+def test_a_pattern_of_another_shape_is_refused(shape: tuple[int, ...]) -> None:
+    with pytest.raises(ParameterError, match="a pattern is rows × columns × 3 colours"):
+        base().changed(pattern=np.zeros(shape, np.float32))
+
+
+def test_moves_of_other_vertices_are_refused() -> None:
+    design = base()
+    vertices = design.graph.vertices
+    for wrong in (vertices[:-1], np.where(vertices > 9, np.nan, vertices)):
+        with pytest.raises(ParameterError, match="places of 2 finite numbers"):
+            design.moved(wrong)

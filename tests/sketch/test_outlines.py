@@ -52,3 +52,10 @@ def test_a_place_lies_in_its_cell_alone():
     found = [outline.around(place % size, period=graph.size) for place in cells.centroid]
     assert all(len(each) == 1 for each in found)
     assert np.mean([each[0] == i for i, each in enumerate(found)]) > 0.95  # all but what is bent like a crescent
+
+
+def test_many_points_are_as_kernels_take_them():
+    """More than fit NumPy's small temporaries: then it gives sums the order of what they were made of."""
+    graph = random_cells((2000.0, 2000.0), cell=25, seed=1)
+    point = outlines(graph, graph.cells()).point
+    assert len(point) > 2**15 and point.flags.c_contiguous

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.sketch.drawn import voronoi
-from texloom.errors import ParameterError
+from texloom.errors import ExemplarError, ParameterError
 from texloom.exemplar.exemplar import Exemplar, from_array
 from texloom.sketch.filling.maps import feature_maps
 from texloom.sketch.graph import CellGraph
@@ -45,7 +45,9 @@ def test_one_sample_is_of_one_kind_and_keeps_its_drawing():
     np.testing.assert_array_equal(sample.graph.vertices, GRAPH.vertices)
     np.testing.assert_array_equal(sample.cells.area, GRAPH.cells().area)
     assert not sample.kinds.of_cell.any() and len(sample.kinds.palette) == 1 and sample.unmasked.all()
-    assert sample.cell_size == pytest.approx(np.sqrt(np.median(GRAPH.cells().area)))
+    area, size = GRAPH.cells().area, sample.cell_size
+    np.testing.assert_allclose(sample.shapes.relative, area / size**2)
+    assert area[area < size**2 * 0.999].sum() < area.sum() / 2 <= area[area < size**2 * 1.001].sum()
 
 
 def test_a_drawing_is_stretched_over_its_sample():
@@ -96,6 +98,24 @@ def test_a_cell_with_one_masked_texel_is_masked():
     sample = SketchSample.of([picture(GRAPH, mask=mask)], [GRAPH])
     assert sample.maps.cell[36, 30] >= 0
     np.testing.assert_array_equal(np.flatnonzero(~sample.unmasked), [sample.maps.cell[36, 30]])
+
+
+def test_cells_of_a_small_and_a_large_sample_are_typical_of_their_own():
+    """Ten of one size and many of another: both are shown as often as their share of the deal is."""
+    coarse, fine = voronoi(16, 2, (90.0, 90.0)), voronoi(140, 3, (90.0, 90.0))
+    sample = SketchSample.of([picture(coarse), picture(fine, hue=1)], [coarse, fine])
+    alone = [SketchSample.of([picture(graph)], [graph]).cell_size for graph in (coarse, fine)]
+    np.testing.assert_allclose(sample.cell_size, np.sqrt(np.prod(alone)))
+    relative = sample.shapes.relative
+    for number, size in enumerate(alone):
+        its = sample.owner == number
+        np.testing.assert_allclose(relative[its], sample.cells.area[its] / size**2)
+
+
+def test_a_mask_that_leaves_no_cell_whole_is_refused():
+    mask = np.indices((72, 64)).sum(axis=0) % 5 > 0
+    with pytest.raises(ExemplarError, match="leave some of them whole"):
+        SketchSample.of([picture(GRAPH, mask=mask)], [GRAPH])
 
 
 def test_as_many_drawings_as_samples_and_colours_for_one():

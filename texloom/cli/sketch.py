@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import Annotated
 
@@ -151,17 +152,17 @@ def _check(wish: SketchWish) -> None:
         options.choose("inside", wish.inside, INSIDE)
     if wish.preset is not None:
         options.choose("preset", wish.preset, (PRESET,))
-    if wish.scale is not None and not wish.scale > 0:
-        raise ParameterError(f"--scale {wish.scale:g}: texels of the texture in one of the sketch, above 0")
+    if wish.scale is not None and not 0 < wish.scale < inf:
+        raise ParameterError(f"--scale {wish.scale:g}: texels of the texture in one of the sketch, above 0, and finite")
 
 
 def check_cells(drawings: Sequence[Path], samples: Sequence[Path], radius: float | None) -> None:
     """Raises: ParameterError, for drawings that are not one for each sample, or a radius below 0."""
     if len(drawings) not in (0, len(samples)):
-        many = f"{len(drawings)} drawings of cells for {len(samples)} samples"
-        raise ParameterError(f"--sample-sketch {drawings[0].name}: {many}: give one each, or none")
-    if radius is not None and not radius >= 0:
-        raise ParameterError(f"--radius {radius:g}: texels, 0 or more")
+        many = f"drawings of cells: {len(drawings)}, samples: {len(samples)}"
+        raise ParameterError(f"--sample-sketch {drawings[0].name}: {many}; give one each, or none")
+    if radius is not None and not 0 <= radius < inf:
+        raise ParameterError(f"--radius {radius:g}: texels, 0 or more, and finite")
 
 
 def _refuse(why: str, **given: object) -> None:

@@ -229,7 +229,7 @@ def deal(
     order: wp.array(dtype=int),
     cost: wp.array2d(dtype=float),  # of every choice for every cell, infinite where it is none
     even: float,
-    share: wp.array(dtype=float),  # choices a cell has, by cells
+    share: wp.array2d(dtype=float),  # one over how often each cell of the sample may well be shown
     opens: wp.array(dtype=int),  # of every cell's neighbours, and one past the last
     beside: wp.array(dtype=int),
     source: wp.array(dtype=int),  # -1 to begin with
@@ -247,7 +247,7 @@ def deal(
         least_spare = float(1.0e30)
         for s in range(cost.shape[1]):
             if cost[c, s] < 1.0e29:
-                asked = cost[c, s] + even * float(used[s]) * share[c]
+                asked = cost[c, s] + even * float(used[s]) * share[c, s]
                 taken = int(0)
                 if asked < least:
                     for k in range(opens[c], opens[c + 1]):

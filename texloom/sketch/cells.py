@@ -51,6 +51,13 @@ class Cells:
         return cell
 
 
+def typical_area(area: Float64[np.ndarray, "cell"]) -> float:
+    """Square texels: half of all that cells cover is in larger ones, so slivers, many as they are, hardly count."""
+    rising = np.sort(area)
+    covered = np.cumsum(rising)
+    return float(rising[np.searchsorted(covered, covered[-1] / 2)])
+
+
 def some_rows(
     start: Int32[np.ndarray, "rows_plus_one"], which: Int[np.ndarray, "chosen"]
 ) -> tuple[Int32[np.ndarray, "chosen_plus_one"], Int[np.ndarray, "entry"]]:

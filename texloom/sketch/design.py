@@ -44,6 +44,8 @@ class Design:
     Every stage is a property, made when first asked for. ``changed(...)`` is the design with other inputs; it keeps all
     stages that do not depend on them. ``moved`` moves vertices of the texture mesh and makes anew only the texels
     around. ``pattern`` (stored values in [0, 1], stretched over the texture) says which kind of cell goes where.
+
+    Raises: ParameterError, for a pattern of another shape than the kinds' colours; and the stages what they do.
     """
 
     sketch: Sketches
@@ -54,6 +56,13 @@ class Design:
     initialization: Initialization | None = None  # None: ours, as what is inside the sample's cells takes it
     pixels: PixelSynthesis = field(default_factory=PixelSynthesis)
     seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.pattern is not None:
+            channels = self.sample.kinds.palette.shape[1]
+            if self.pattern.ndim != 3 or self.pattern.shape[2] != channels or not self.pattern.size:
+                shape = "×".join(map(str, self.pattern.shape))
+                raise ParameterError(f"a pattern is rows × columns × {channels} colours in [0, 1], not {shape}")
 
     @cached_property
     def patch(self) -> Patch:
@@ -99,8 +108,8 @@ class Design:
             wanted = painted(self.maps.cell, self.pattern, palette=known.palette, count=len(self.cells))
             kinds = known.of_cell, wanted
         beside = neighbours(self.graph, self.cells)
-        usable = self.sample.unmasked
-        return self.deal.run(self.sample.shapes, self.shapes, beside, kinds=kinds, usable=usable, seed=self.seed)
+        given = {"kinds": kinds, "owner": self.sample.owner, "usable": self.sample.unmasked}
+        return self.deal.run(self.sample.shapes, self.shapes, beside, **given, seed=self.seed)
 
     @property
     def kinds(self) -> Int32[np.ndarray, "cell"]:
@@ -153,8 +162,14 @@ class Design:
     def moved(self, vertices: Float64[np.ndarray, "vertex 2"]) -> "Design":
         """The design with the vertices of its texture mesh elsewhere; cells keep what they show.
 
-        Raises: ParameterError, if edges would cross or a cell turn over.
+        Texels around are chosen beside what others show already, so they may differ from those of a design made anew.
+
+        Raises: ParameterError, if they are not as many, not finite, if edges would cross or a cell turn over.
         """
+        vertices = np.asarray(vertices, np.float64)
+        if vertices.shape != self.graph.vertices.shape or not np.isfinite(vertices).all():
+            count = len(self.graph.vertices)
+            raise ParameterError(f"a move takes {count} places of 2 finite numbers, not an array of {vertices.shape}")
         graph = self.graph.moved(vertices)
         cells = again(graph, self.cells)
         flipped = np.count_nonzero(cells.area <= 0)

@@ -1,19 +1,19 @@
 """Samples as the sketch method sees them: their cells, kinds of cells, and maps of them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from jaxtyping import Bool, Float32, Int32
+from jaxtyping import Bool, Float32, Float64, Int32
 
 from texloom.arrays import Image, in_fours
-from texloom.errors import ParameterError
+from texloom.errors import ExemplarError, ParameterError
 from texloom.exemplar.exemplar import Exemplar
 from texloom.exemplar.features import match_image
 from texloom.exemplar.join import join
-from texloom.sketch.cells import Cells
+from texloom.sketch.cells import Cells, typical_area
 from texloom.sketch.filling.kinds import Kinds, kinds_of
 from texloom.sketch.filling.maps import FeatureMaps, feature_maps
 from texloom.sketch.filling.shapes import CellShapes, cell_shapes
@@ -35,6 +35,7 @@ class SketchSample:
     cells: Cells
     maps: FeatureMaps
     kinds: Kinds
+    owner: Int32[np.ndarray, "cell"]  # the number of the sample that each cell is of
 
     @staticmethod
     def of(
@@ -47,8 +48,8 @@ class SketchSample:
 
         ``colours`` (stored values in [0, 1], stretched over the one sample) tell kinds apart.
 
-        Raises: ExemplarError, if no cells are found; ParameterError, for colours over several samples, or graphs that
-        are not as many or lie on a torus.
+        Raises: ExemplarError, if no cells are found, or a mask leaves none whole; ParameterError, for colours over
+        several samples, or graphs that are not as many or lie on a torus.
         """
         if graphs and len(graphs) != len(exemplars):
             raise ParameterError(f"{len(graphs)} cell meshes for {len(exemplars)} samples: give one each, or none")
@@ -60,21 +61,26 @@ class SketchSample:
         if any(graph.wrap for graph in drawn):
             raise ParameterError("a sample's cells lie in its picture, these go around a torus: cut them to it first")
         drawn = [one.resized((float(p.rows), float(p.columns))) for one, p in zip(drawn, joined.parts, strict=True)]
-        graph, owner = _together(drawn, [(part.row, part.column) for part in joined.parts], size)
+        graph, of_vertex = _together(drawn, [(part.row, part.column) for part in joined.parts], size)
         cells = graph.cells()
         maps = feature_maps(graph, cells)
         maps.closeness[~joined.exemplar.usable] = 0  # no texel is to begin there
+        owner = of_vertex[graph.edges[cells.halfedge[cells.start[:-1]] // 2, 0]]
+        known = Kinds(owner, _palette(len(exemplars)))
         if colours is not None:
-            kinds = kinds_of(maps.cell, colours, len(cells))
-        else:
-            of_cell = owner[graph.edges[cells.halfedge[cells.start[:-1]] // 2, 0]]
-            kinds = Kinds(of_cell, _palette(len(exemplars)))
-        return SketchSample(joined.exemplar, graph, cells, maps, kinds)
+            known = kinds_of(maps.cell, colours, len(cells))
+        sample = SketchSample(joined.exemplar, graph, cells, maps, known, owner)
+        if len(cells) and not joined.exemplar.usable.all() and not sample.unmasked.any():
+            raise ExemplarError(
+                f"masked texels lie in each of the sample's {len(cells)} cells: leave some of them whole"
+            )
+        return sample
 
     @cached_property
     def shapes(self) -> CellShapes:
-        """Of its cells."""
-        return cell_shapes(self.graph, self.cells)
+        """Of its cells, each beside a typical one of its own sample."""
+        shapes = cell_shapes(self.graph, self.cells)
+        return replace(shapes, relative=shapes.area / self._typical[self.owner])
 
     @cached_property
     def image(self) -> Image:
@@ -94,8 +100,14 @@ class SketchSample:
 
     @property
     def cell_size(self) -> float:
-        """Texels: the square root of a typical cell's area."""
-        return float(np.sqrt(np.median(self.cells.area)))
+        """Texels: the square root of a typical cell's area, of several samples their geometric mean."""
+        return float(np.exp(np.log(self._typical).mean() / 2))
+
+    @property
+    def _typical(self) -> Float64[np.ndarray, "sample"]:
+        """The area of a typical cell of each sample."""
+        areas = [self.cells.area[self.owner == number] for number in range(int(self.owner.max(initial=0)) + 1)]
+        return np.array([typical_area(area) for area in areas])
 
 
 def _together(

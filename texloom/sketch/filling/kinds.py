@@ -117,7 +117,7 @@ def neighbours(graph: CellGraph, cells: Cells) -> tuple[Int32[np.ndarray, "cells
 class Deal:
     """Which of the sample's cells each cell of the texture shows.
 
-    ``alike``: ours. Of the cells of the same kind one that is much like it in area (each by the median of its side),
+    ``alike``: ours. Of the cells of the same kind one that is much like it in area (by that of typical ones),
     elongation, direction and number of corners, not shown by a neighbour, and shown no more often than others, the rest
     left to a draw. ``random``: the paper's, any cell of the same kind, as it lies.
     """
@@ -131,10 +131,13 @@ class Deal:
         beside: tuple[Int32[np.ndarray, "cells_plus_one"], Int32[np.ndarray, "n"]],
         *,
         kinds: tuple[Int32[np.ndarray, "sample_cell"], Int32[np.ndarray, "texture_cell"]] | None = None,
+        owner: Int32[np.ndarray, "sample_cell"] | None = None,
         usable: Bool[np.ndarray, "sample_cell"] | None = None,
         seed: int,
     ) -> Assignment:
         """One cell of the sample for each of the texture's; ``beside`` are those ``neighbours``.
+
+        Of several samples (``owner``) each is shown as often, whether its cells are many or few.
 
         Cells cut by the sample's border, seen whole from no centre, or not ``usable``, are shown only where no other of
         their kind is; where there is none of the kind at all, any is taken.
@@ -150,7 +153,8 @@ class Deal:
         if self.by == "random" or not len(texture):
             source = _drawn(allowed, seed)
             return Assignment(source, np.zeros(len(texture), np.float32))
-        source = _dealt(_unlike(sample, texture), allowed, beside, seed)
+        used_up = _used_up(allowed, np.zeros(len(sample), np.int32) if owner is None else owner)
+        source = _dealt(_unlike(sample, texture), allowed, beside, used_up=used_up, seed=seed)
         return Assignment(source, _turns(sample, texture)[np.arange(len(texture)), source].astype(np.float32))
 
 
@@ -183,7 +187,7 @@ def _turns(sample: CellShapes, texture: CellShapes) -> Float64[np.ndarray, "t s"
 def _unlike(sample: CellShapes, texture: CellShapes) -> Float32[np.ndarray, "t s"]:
     """How unlike cells are, in squares of what counts as unlike; less and less beyond a dozen."""
     area, longer, turned, corners = _SCALES
-    size = [np.log(shapes.area / np.median(shapes.area)) for shapes in (sample, texture)]
+    size = [np.log(shapes.relative) for shapes in (sample, texture)]
     apart = ((size[0] - size[1][:, None]) / area) ** 2
     apart += ((sample.elongation - texture.elongation[:, None]) / longer) ** 2
     both = np.minimum(sample.elongation, texture.elongation[:, None])
@@ -192,10 +196,19 @@ def _unlike(sample: CellShapes, texture: CellShapes) -> Float32[np.ndarray, "t s
     return (_MOST * apart / (apart + _MOST)).astype(np.float32)
 
 
+def _used_up(allowed: Bool[np.ndarray, "t s"], owner: Int32[np.ndarray, "s"]) -> Float32[np.ndarray, "t s"]:
+    """What showing a cell once takes of its fair share: its sample's choices times samples to choose from, by cells."""
+    choices = allowed @ (owner[:, None] == np.arange(owner.max(initial=0) + 1)).astype(np.float32)
+    samples = (choices > 0).sum(axis=1, keepdims=True)
+    return (choices * samples / max(len(allowed), 1)).astype(np.float32).take(owner, axis=1)
+
+
 def _dealt(
     unlike: Float32[np.ndarray, "t s"],
     allowed: Bool[np.ndarray, "t s"],
     beside: tuple[Int32[np.ndarray, "cells_plus_one"], Int32[np.ndarray, "n"]],
+    *,
+    used_up: Float32[np.ndarray, "t s"],
     seed: int,
 ) -> Int32[np.ndarray, "t"]:
     """One cell after the other, in a drawn order, each the cheapest left by its neighbours."""
@@ -203,8 +216,7 @@ def _dealt(
     order = draws.permutation(seed, 0, count=cells).astype(np.int32)
     luck = draws.uniform(seed, 1, index=np.arange(unlike.size)).reshape(unlike.shape)
     cost = np.where(allowed, unlike + _LUCK * luck, np.float32(np.inf)).astype(np.float32)
-    share = allowed.sum(axis=1).astype(np.float32) / np.float32(max(cells, 1))
     source, used = np.full(cells, -1, np.int32), np.zeros(choices, np.int32)
-    inputs = [order, cost, _EVEN, share, *beside]
+    inputs = [order, cost, _EVEN, used_up, *beside]
     launch(kernels.deal, 1, inputs=inputs, outputs=[source, used], grain=1)
     return source

@@ -7,7 +7,7 @@ from jaxtyping import Float32, Float64, Int32
 
 from texloom.kernels import sketch_maps as kernels
 from texloom.kernels.launch import launch
-from texloom.sketch.cells import Cells
+from texloom.sketch.cells import Cells, typical_area
 from texloom.sketch.filling.outlines import outlines
 from texloom.sketch.graph import CellGraph
 
@@ -16,6 +16,7 @@ Window = tuple[slice, slice]
 
 _BLUR = 0.06  # of a typical cell: δ of eq. 10
 _LEAST_BLUR = 0.6  # texels
+_MOST_BLUR = 1 / 16  # of the map's shorter side: of cells larger than the map no more is seen
 _REACH = 2.5  # δ from the middle of a neighbourhood to its side
 _ON_EDGE = 0.5  # texels from an edge: nearer, a texel is a part of it
 _TOLERANCE = 0.25  # texels from a chord to its curve
@@ -56,12 +57,13 @@ class FeatureMaps:
 def feature_maps(graph: CellGraph, cells: Cells, *, blur: float | None = None) -> FeatureMaps:
     """The maps of a graph at its own size.
 
-    ``blur`` (texels) is 0.06 of a typical cell, the square root of the median area, unless given. At a border that does
+    ``blur`` (texels) is 0.06 of a typical cell, the square root of a typical area, unless given. At a border that does
     not wrap, neighbourhoods of D end, and those of V see what a mirror would show, or V would lean inwards.
     """
     rows, columns = (max(int(round(side)), 1) for side in graph.size)
     if blur is None:
-        blur = max(_BLUR * float(np.sqrt(np.median(cells.area))) if len(cells) else 0.0, _LEAST_BLUR)
+        typical = float(np.sqrt(typical_area(cells.area))) if len(cells) else 0.0
+        blur = max(min(_BLUR * typical, _MOST_BLUR * min(rows, columns)), _LEAST_BLUR)
     maps = FeatureMaps(
         np.empty((rows, columns), np.float32),
         np.empty((rows, columns, 2), np.float32),

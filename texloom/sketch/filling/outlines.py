@@ -84,7 +84,7 @@ def outlines(graph: CellGraph, cells: Cells) -> Outlines:
     by_coordinate = curves.transpose(1, 2, 0).take(on, axis=2)  # points_at is twice as fast that way
     point = points_at(by_coordinate.transpose(2, 0, 1), t) + _shifts(graph, cells)[entry]
     start = np.concatenate([[0], np.cumsum(np.add.reduceat(count, cells.start[:-1]))])
-    return Outlines(start.astype(np.int32), np.rint(point * _GRID) / _GRID)
+    return Outlines(start.astype(np.int32), np.ascontiguousarray(np.rint(point * _GRID) / _GRID))
 
 
 def _shifts(graph: CellGraph, cells: Cells) -> Float64[np.ndarray, "entry 2"]:

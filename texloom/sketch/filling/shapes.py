@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float32, Float64, Int32
 
 from texloom.kernels import sketch_cells as kernels
 from texloom.kernels.launch import launch
-from texloom.sketch.cells import Cells, some_rows
+from texloom.sketch.cells import Cells, some_rows, typical_area
 from texloom.sketch.filling.outlines import Outlines, outlines
 from texloom.sketch.graph import CellGraph
 
@@ -31,6 +31,7 @@ class CellShapes:
     rim: Float32[np.ndarray, "cell bin 2"]
     depth: Float32[np.ndarray, "cell"]
     area: Float64[np.ndarray, "cell"]
+    relative: Float64[np.ndarray, "cell"]  # area by that of a typical cell
     spread: Float64[np.ndarray, "cell 2 2"]  # covariance of its texels
     corners: Int32[np.ndarray, "cell"]  # vertices where other cells meet it
     whole: Bool[np.ndarray, "cell"]  # not cut by the drawing's border
@@ -73,7 +74,7 @@ def cell_shapes(graph: CellGraph, cells: Cells) -> CellShapes:
     if not len(cells):
         none = np.zeros(0)
         spread, rim = np.zeros((0, 2, 2)), np.zeros((0, _LEAST_BINS, 2), np.float32)
-        return CellShapes(rim[:, 0], rim, rim[:, 0, 0], none, spread, np.zeros(0, np.int32), np.zeros(0, bool))
+        return CellShapes(rim[:, 0], rim, rim[:, 0, 0], none, none, spread, np.zeros(0, np.int32), np.zeros(0, bool))
     low, high = outline.box()
     around = 4 * float((high - low).max())
     bins = int(np.clip(2 ** np.ceil(np.log2(around)), _LEAST_BINS, _MOST_BINS))
@@ -85,6 +86,7 @@ def cell_shapes(graph: CellGraph, cells: Cells) -> CellShapes:
         rim,
         depth,
         cells.area,
+        cells.area / typical_area(cells.area),
         outline.spread(cells.centroid),
         np.add.reduceat(joint, cells.start[:-1], dtype=np.int32),
         inside | np.full(len(cells), graph.wrap),

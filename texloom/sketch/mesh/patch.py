@@ -76,7 +76,7 @@ def seamless_patch(sketches: Sketches, seed: int) -> Patch:
     Crops have at least half the sketch's sides. Where different numbers of edges cross opposite sides of all of them,
     or none can be bent without edges that cross, the patch is the whole sketch with its three mirror images.
 
-    Raises: ParameterError, if a sketch has no edges, or lines so close that no patch comes of it.
+    Raises: ParameterError, if a sketch has no edges, no cells, or lines so close that no patch comes of it.
     """
     every = (sketches,) if isinstance(sketches, CellGraph) else sketches
     if not every or not all(len(sketch.edges) for sketch in every):
@@ -84,6 +84,8 @@ def seamless_patch(sketches: Sketches, seed: int) -> Patch:
     found = [_of_one(sketch, seed) for sketch in every]
     number = min(range(len(found)), key=lambda n: (not _covered(found[n][0]), found[n][2]))
     graph, crop, cost = found[number]
+    if not len(graph.cells()):
+        raise ParameterError("no piece of the sketch goes on as closed cells: draw cells side by side, over all of it")
     runs = [strands(sketch) for sketch in every]
     note = _long_edges(every[number], runs[number]) if cost > 0 else None
     return Patch(graph, number, crop, cost, bool(np.isinf(cost)), note, *_page(every, runs))

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from texloom.errors import ParameterError
+from texloom.sketch.cells import typical_area
 from texloom.sketch.graph import CellGraph
 
 
@@ -16,7 +17,7 @@ def cell_size(graph: CellGraph) -> float:
     area = graph.cells().area
     if not len(area):
         raise ParameterError("the sketch has no cells: close the borders of at least one")
-    return float(np.sqrt(np.median(area)))
+    return float(np.sqrt(typical_area(area)))
 
 
 def alike(sketches: Sequence[CellGraph]) -> tuple[CellGraph, ...]:

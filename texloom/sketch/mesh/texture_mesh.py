@@ -12,6 +12,7 @@ from texloom.sketch.mesh.scale import cell_size
 from texloom.sketch.mesh.tiling import Tiling, on_plane, tile
 
 _STRAY = 0.25  # of a cell: bricks stay bricks, repetition goes
+_FINEST, _COARSEST = 1.0, 16.0  # texels across a cell, and textures: beyond, there is nothing to see of cells
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,10 +33,10 @@ class TextureMesh:
     def __post_init__(self) -> None:
         if min(self.size) < 1:
             raise ParameterError(f"a texture of {self.size[1]}×{self.size[0]} texels: both must be 1 or more")
-        if not self.scale > 0:
-            raise ParameterError(f"scale {self.scale:g}: it must be above 0")
-        if not self.radius >= 0 or self.iterations < 0:
-            raise ParameterError(f"radius {self.radius:g}, iterations {self.iterations}: neither may be below 0")
+        if not 0 < self.scale < np.inf:
+            raise ParameterError(f"scale {self.scale:g}: it must be above 0, and finite")
+        if not 0 <= self.radius < np.inf or self.iterations < 0:
+            raise ParameterError(f"radius {self.radius:g}, iterations {self.iterations}: finite, and neither below 0")
         if not 0 <= self.strength <= 1:
             raise ParameterError(f"strength {self.strength:g}: it must be between 0 and 1")
 
@@ -59,6 +60,11 @@ class TextureMesh:
         own = cell_size(sketch)
         if scale is None:
             scale = 1.0 if cell is None else cell / own
+        if not _FINEST < scale * own < _COARSEST * max(size):
+            many = f"cells of {scale * own:.3g} texels at scale {scale:g}, for a texture of {size[1]}×{size[0]}"
+            raise ParameterError(
+                f"{many}: choose a scale between {_FINEST / own:.2g} and {_COARSEST * max(size) / own:.2g}"
+            )
         stray = _STRAY * scale * own if radius is None else radius
         return TextureMesh(size=size, scale=scale, tileable=tileable, radius=stray)
 

@@ -12,7 +12,7 @@ from texloom.sketch.reading.fitting import curved
 from texloom.sketch.reading.ink import cells_of_ink, connected
 from texloom.sketch.reading.mending import cells_of
 from texloom.sketch.reading.mends import Mend
-from texloom.sketch.reading.overlap import refuse_overlap
+from texloom.sketch.reading.overlap import refuse_inked_overlap, refuse_overlap
 
 _BLOCK = 24  # texels a side of the blocks over which the paper's light is taken
 _PAPER = 85  # percentile of a block that is paper
@@ -37,6 +37,7 @@ def graph_of_drawing(grey: Float32[np.ndarray, "row column"]) -> tuple[CellGraph
     if not count:
         raise FileError("the drawing closes no cell: draw lines that meet around cells")
     refuse_overlap(lines, count)
+    refuse_inked_overlap(ink, count)
     rows, columns = grey.shape
     return curved((float(rows), float(columns)), lines, tolerance=_FIT), notes
 

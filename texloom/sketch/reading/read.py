@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from texloom.errors import TexloomError
+from texloom.errors import ParameterError, TexloomError
 from texloom.io.stack import read_exemplar
 from texloom.io.svg import read_svg
 from texloom.sketch.graph import CellGraph
@@ -25,6 +25,8 @@ def read_sketch(path: str | Path, *, size: tuple[float, float] | None = None) ->
     Raises: FileError or ExemplarError, if it cannot be read, closes no cell, or its elements overlap.
     """
     path = Path(path)
+    if size is not None and not min(size) > 0:
+        raise ParameterError(f"a sketch of {size[1]:g}×{size[0]:g} texels: both must be above 0")
     graph, notes = _read(path)
     if size is None:
         return graph, notes

@@ -30,15 +30,19 @@ def graph_of(strokes: Strokes) -> tuple[CellGraph, list[Mend]]:
     0.2, gaps to 0.4, lines drawn double to 0.08 of it. Cells drawn as outlines beside each other share the middle
     between them. Open ends near the drawing's border stay. Curves come back within 0.006 of a cell.
 
-    Raises: FileError, if no cell is closed or its outlines overlap.
+    Raises: FileError, if nothing lies on the page, no cell is closed, or outlines overlap.
     """
     lines = _lines(strokes)
+    low, high = lines.vertices.min(axis=0), lines.vertices.max(axis=0)
+    if (high < -0.5).any() or (low > np.array(strokes.size) - 0.5).any():
+        rows, columns = strokes.size
+        raise FileError(f"nothing is drawn on the page of {columns:.0f}×{rows:.0f}: move what lies beside onto it")
     draft = Draft(noded(lines.vertices, lines.edges, weld=WELD * typical_cell(lines)), np.array(strokes.size))
     mend(draft)
     cells = cells_of(draft.lines)
     if not len(cells):
         raise FileError(
-            f"the drawing closes no cell: {len(strokes)} strokes leave gaps wider than {0.4 * draft.cell:.0f} texels"
+            f"the drawing closes no cell: gaps between the strokes are wider than {0.4 * draft.cell:.0f} texels"
         )
     refuse_overlap(draft.lines, len(cells))
     tolerance = _NEAR * draft.cell
