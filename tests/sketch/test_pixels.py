@@ -9,13 +9,14 @@ from scipy.ndimage import gaussian_filter, map_coordinates
 from tests.sketch.test_design import SAMPLE, base, torus
 from tests.sketch.test_sample import GRAPH, picture
 from texloom.demo.samples import draw
+from texloom.domain.grid import Grid
 from texloom.errors import ParameterError
 from texloom.exemplar.exemplar import from_array
 from texloom.kernels.launch import thread_count, use
 from texloom.sketch.design import Design
 from texloom.sketch.filling.kinds import Assignment
 from texloom.sketch.filling.maps import FeatureMaps, feature_maps
-from texloom.sketch.filling.pixels import PixelSynthesis
+from texloom.sketch.filling.pixels import PixelSynthesis, _every_other
 from texloom.sketch.filling.shapes import cell_shapes
 from texloom.sketch.filling.warp import Initialization, Start
 from texloom.sketch.graph import CellGraph, straight
@@ -198,3 +199,11 @@ def test_lines_across_those_of_the_sample_show_them_turned(turned):
 def test_what_makes_no_sense_is_refused(wrong):
     with pytest.raises(ParameterError):
         PixelSynthesis(**wrong)
+
+
+def test_every_other_texel_is_compared_and_the_middle_is():
+    around = Grid(9, 9, wrap=True).neighbourhoods(np.array([40], np.int32), 2)
+    compared = around.offset[0][_every_other(around)]
+    assert sorted(map(tuple, compared)) == [(r, c) for r in range(-2, 3) for c in range(-2, 3) if (r + c) % 2 == 0]
+    whole = run(base(), PixelSynthesis(sparse=False))
+    assert (run(base(), PixelSynthesis()).position != whole.position).any()

@@ -42,6 +42,6 @@ def design(
         pattern=pattern,
         deal=Deal(by="random"),
         initialization=Initialization(inside=inside, lines="nearest"),
-        pixels=PixelSynthesis(passes=4, turned=turned),
+        pixels=PixelSynthesis(passes=4, turned=turned, sparse=False),
         seed=seed,
     )
