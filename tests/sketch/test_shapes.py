@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tests.sketch.drawn import voronoi, wall
-from texloom.sketch.filling.shapes import cell_shapes
+from texloom.sketch.cells import again
+from texloom.sketch.filling.shapes import cell_shapes, moved_shapes
 from texloom.sketch.graph import CellGraph, straight
 from texloom.sketch.random import random_cells
 
@@ -93,3 +94,20 @@ def test_rims_enclose_the_area_of_cells_that_are_convex(seed: int):
 def test_a_graph_without_cells_has_no_shapes():
     graph = straight((20.0, 20.0), np.array([[1.0, 1], [9, 9]]), np.array([[0, 1]]))
     assert len(cell_shapes(graph, graph.cells())) == 0
+
+
+def test_shapes_of_cells_that_moved_are_those_made_anew():
+    graph = random_cells((90.0, 110.0), cell=18, seed=4)
+    cells = graph.cells()
+    vertices = graph.vertices.copy()
+    vertices[:3] += 1.5
+    after = graph.moved(vertices)
+    measured = again(after, cells)
+    which = measured.beside(after.moved_from(graph))
+    assert 3 <= len(which) < len(cells) / 2
+    found, wanted = moved_shapes(cell_shapes(graph, cells), after, measured, which), cell_shapes(after, measured)
+    for name, values in vars(wanted).items():
+        np.testing.assert_allclose(getattr(found, name), values, rtol=1e-5, atol=1e-5, err_msg=name)
+    np.testing.assert_array_equal(found.rim[which], wanted.rim[which])
+    nothing = moved_shapes(found, after, measured, which[:0])
+    np.testing.assert_array_equal(nothing.rim, found.rim)

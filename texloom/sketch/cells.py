@@ -44,6 +44,10 @@ class Cells:
         start, entry = some_rows(self.start, which)
         return Cells(start, self.halfedge[entry], self.area[which], self.centroid[which])
 
+    def beside(self, edges: Bool[np.ndarray, "edge"]) -> Int[np.ndarray, "n"]:
+        """The cells on either side of some edges, in order; -1 first if there is none on some side."""
+        return np.unique(self.of_halfedge(len(edges)).reshape(-1, 2)[edges])
+
     def of_halfedge(self, edges: int) -> Int32[np.ndarray, "halfedge"]:
         """The cell at the left of every half-edge of so many edges; -1 where there is none."""
         cell = np.full(2 * edges, -1, np.int32)

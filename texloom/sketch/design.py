@@ -12,7 +12,7 @@ from texloom.sketch.cells import Cells, again
 from texloom.sketch.filling.kinds import Assignment, Deal, neighbours, painted
 from texloom.sketch.filling.maps import FeatureMaps, changed, feature_maps, redraw
 from texloom.sketch.filling.pixels import PixelSynthesis
-from texloom.sketch.filling.shapes import CellShapes, cell_shapes
+from texloom.sketch.filling.shapes import CellShapes, cell_shapes, moved_shapes
 from texloom.sketch.filling.warp import Initialization, Start
 from texloom.sketch.graph import CellGraph
 from texloom.sketch.mesh.patch import Patch, Sketches
@@ -181,7 +181,8 @@ class Design:
         window = changed(self.maps, self.graph, graph, self.cells)
         maps, start, canvas = _copy(self.maps), _copy(self.start), _copy(self.canvas)
         redraw(maps, graph, cells, window=window)
-        shapes = cell_shapes(graph, cells)
+        beside = cells.beside(graph.moved_from(self.graph))
+        shapes = moved_shapes(self.shapes, graph, cells, beside[beside >= 0])
         sample = (self.sample.maps, self.sample.shapes)
         self._laying.again(start, sample, (maps, shapes), self.assignment, window=window, seed=self.seed)
         self.pixels.again(canvas, self.guide, maps, start, self.kinds, window=window)
@@ -193,7 +194,7 @@ class Design:
 
 def _newly_crossed(before: CellGraph, after: CellGraph) -> int:
     """Pairs of edges that cross only after a move; of those around what moved, for no others can."""
-    moved = (before.curves != after.curves).any(axis=(1, 2))
+    moved = after.moved_from(before)
     if not moved.any():
         return 0
     low, high = after.curves.min(axis=1), after.curves.max(axis=1)

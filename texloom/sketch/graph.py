@@ -67,6 +67,10 @@ class CellGraph:
         share = np.array([1 / 3, 2 / 3, 1])[:, None]
         return replace(self, vertices=vertices, curve=self.curve + (head - tail)[:, None] * share)
 
+    def moved_from(self, before: "CellGraph") -> Bool[np.ndarray, "edge"]:
+        """The edges that lie elsewhere than in the same graph with its vertices where they were."""
+        return (self.curves != before.curves).any(axis=(1, 2))
+
     def part(self, edges: Int[np.ndarray, "chosen"]) -> "CellGraph":
         """The graph with some of its edges, in that order, and all of its vertices."""
         return replace(self, edges=self.edges[edges], curve=self.curve[edges])

@@ -89,14 +89,12 @@ def changed(maps: FeatureMaps, before: CellGraph, after: CellGraph, cells: Cells
 
     All texels where an edge that moved borders on no cell, or where cells that moved lie across the border of a torus.
     """
-    moved = (before.curves != after.curves).any(axis=(1, 2))
     everything = slice(0, maps.shape[0]), slice(0, maps.shape[1])
-    beside = cells.of_halfedge(len(moved)).reshape(-1, 2)[moved]
-    if (beside < 0).any():
-        return everything
-    which = np.unique(beside)
+    which = cells.beside(after.moved_from(before))
     if not len(which):
         return slice(0, 0), slice(0, 0)
+    if which[0] < 0:
+        return everything
     low, high = zip(*(outlines(graph, cells.some(which)).box() for graph in (before, after)), strict=True)
     low, high = np.minimum(*low), np.maximum(*high)
     if maps.wrap:  # all beside the first, and that in the drawing

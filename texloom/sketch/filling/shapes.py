@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float32, Float64, Int32
+from jaxtyping import Bool, Float32, Float64, Int, Int32
 
 from texloom.kernels import sketch_cells as kernels
 from texloom.kernels.launch import launch
@@ -71,13 +71,36 @@ class CellShapes:
 def cell_shapes(graph: CellGraph, cells: Cells) -> CellShapes:
     """The shapes of a graph's cells."""
     outline = outlines(graph, cells)
+    return _shapes(graph, cells, outline, _bins(outline))
+
+
+def moved_shapes(shapes: CellShapes, graph: CellGraph, cells: Cells, which: Int[np.ndarray, "moved"]) -> CellShapes:
+    """The same where only some cells have moved, the others' kept."""
+    some = cells.some(which)
+    outline, bins = outlines(graph, some), shapes.rim.shape[1]
+    if _bins(outline) > bins:
+        return cell_shapes(graph, cells)
+    made = vars(shapes) | {"relative": cells.area / typical_area(cells.area)}
+    for name, values in vars(_shapes(graph, some, outline, bins)).items():
+        if name != "relative":
+            made[name] = made[name].copy()
+            made[name][which] = values
+    return CellShapes(**made)
+
+
+def _bins(outline: Outlines) -> int:
+    """Directions in which rims are told: a few for each texel of the widest cell's outline."""
+    low, high = outline.box()
+    around = 4 * float((high - low).max(initial=0))
+    return int(np.clip(2 ** np.ceil(np.log2(max(around, 1))), _LEAST_BINS, _MOST_BINS))
+
+
+def _shapes(graph: CellGraph, cells: Cells, outline: Outlines, bins: int) -> CellShapes:
     if not len(cells):
         none = np.zeros(0)
-        spread, rim = np.zeros((0, 2, 2)), np.zeros((0, _LEAST_BINS, 2), np.float32)
+        spread, rim = np.zeros((0, 2, 2)), np.zeros((0, bins, 2), np.float32)
         return CellShapes(rim[:, 0], rim, rim[:, 0, 0], none, none, spread, np.zeros(0, np.int32), np.zeros(0, bool))
     low, high = outline.box()
-    around = 4 * float((high - low).max())
-    bins = int(np.clip(2 ** np.ceil(np.log2(around)), _LEAST_BINS, _MOST_BINS))
     centre, rim, depth = _centred(outline, cells, bins)
     inside = (low > -0.5 + _BORDER).all(axis=1) & (high < np.array(graph.size) - 0.5 - _BORDER).all(axis=1)
     joint = graph.degree[graph.edges.ravel()[cells.halfedge]] > 2
