@@ -11,7 +11,7 @@ from texloom.cli import options
 from texloom.cli.reapply import image_domain
 from texloom.cli.samples import read_each, tell_dropped
 from texloom.cli.session import Session
-from texloom.cli.sketch import SketchWish
+from texloom.cli.sketch_wish import SketchWish
 from texloom.cli.sketches import picture, read_cells, read_sketches, told_kinds
 from texloom.domain.grid import Grid
 from texloom.exemplar.exemplar import Exemplar, to_map

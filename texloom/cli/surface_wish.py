@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from texloom.cli.library import SUFFIX
 from texloom.cli.meshes import Meshes
-from texloom.cli.sketch import check_cells
+from texloom.cli.sketch_wish import check_cells
 from texloom.errors import ParameterError
 
 if TYPE_CHECKING:
