@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import warp as wp
 
-from texloom.kernels.launch import Repeated, launch, parallel_map, thread_count, use
+from texloom.kernels.launch import Lasting, Repeated, launch, parallel_map, thread_count, use
 
 
 @wp.kernel(enable_backward=False)
@@ -103,6 +103,19 @@ def test_structs_are_dicts_of_their_fields_read_and_written_in_place(threads):
     assert (kept["of"] == [2, 0]).all()
     for name, part in given.items():
         np.testing.assert_array_equal(part, read[name])
+
+
+def test_structs_that_last_are_shared_once_and_see_what_their_arrays_hold():
+    fields = {"value": np.ones((3, 2), np.float32), "of": np.array([[0, k] for k in (2, 0, 1)], np.int32), "share": 2.0}
+    kept = {"value": np.zeros((3, 2), np.float32), "of": np.zeros((3, 2), np.int32), "share": 0.0}
+    given = Lasting(fields)
+    launch(book, 3, inputs=[given], outputs=[kept])
+    shared = given.view
+    np.testing.assert_array_equal(kept["value"], np.full((3, 2), 2))
+    fields["value"][:] = [[1, 2], [3, 4], [5, 6]]
+    launch(book, 3, inputs=[given], outputs=[kept])
+    assert given.view is shared
+    np.testing.assert_array_equal(kept["value"], [[10, 12], [2, 4], [6, 8]])
 
 
 def test_arrays_in_structs_must_lie_as_kernels_read_them():
