@@ -140,6 +140,13 @@ def test_shares_stay_shares_and_light_stays_light():
     assert bright.min() == 0 and 8.1 < bright.max() < 16
 
 
+def test_a_corner_that_does_not_count_may_have_no_site():
+    map, sources = noise(12, 12), identity_sources(12, 12)
+    points = {"barycentric": np.array([[0.0, 1.0, 0.0]]), "offsets": np.full((1, 3, 2), 0.25)}
+    found = gather_points(sources, map, np.array([[-1, 50, -1]]), **points)
+    np.testing.assert_allclose(found[0], sample(map.image, 4.25, 2.25), atol=1e-6)
+
+
 @settings(max_examples=30, deadline=None)
 @given(turn=st.floats(-7, 7), more=st.floats(-7, 7))
 def test_turns_of_normals_add_up_and_keep_lengths(turn, more):

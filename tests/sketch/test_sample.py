@@ -112,6 +112,18 @@ def test_cells_of_a_small_and_a_large_sample_are_typical_of_their_own():
         np.testing.assert_allclose(relative[its], sample.cells.area[its] / size**2)
 
 
+def test_samples_without_cells_do_not_count():
+    open_lines = CellGraph((72.0, 64.0), GRAPH.vertices[:2], np.array([[0, 1]], np.int32), np.ones((1, 3, 2)))
+    alone = SketchSample.of([picture(GRAPH)], [GRAPH])
+    beside = SketchSample.of([picture(GRAPH)] * 2, [open_lines, GRAPH])
+    np.testing.assert_allclose(beside.cell_size, alone.cell_size)
+    np.testing.assert_allclose(beside.shapes.relative, alone.shapes.relative)
+    none = SketchSample.of([picture(GRAPH)], [open_lines])
+    assert len(none.shapes) == 0
+    with pytest.raises(ExemplarError, match="the sample has no cells"):
+        _ = none.cell_size
+
+
 def test_a_mask_that_leaves_no_cell_whole_is_refused():
     mask = np.indices((72, 64)).sum(axis=0) % 5 > 0
     with pytest.raises(ExemplarError, match="leave some of them whole"):

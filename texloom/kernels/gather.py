@@ -165,7 +165,9 @@ def values_at_points(
         total = float(0.0)  # of the weights that read there
         for corner in range(3):
             s = sites[i, corner]
-            w = barycentric[i, corner] * weight[s, k]
+            w = float(0.0)
+            if barycentric[i, corner] > 0.0:  # a corner that does not count may have no site
+                w = barycentric[i, corner] * weight[s, k]
             if w > 0.0:
                 there = shown_at(position[s, k], turn, scale, s, k, offsets[i, corner])
                 if total > 0.0 and wp.length(there - place) > SAME:
@@ -194,7 +196,9 @@ def normals_at_points(
         total = float(0.0)  # of the weights that read there, turned so
         for corner in range(3):
             s = sites[i, corner]
-            w = barycentric[i, corner] * weight[s, k]
+            w = float(0.0)
+            if barycentric[i, corner] > 0.0:  # a corner that does not count may have no site
+                w = barycentric[i, corner] * weight[s, k]
             if w > 0.0:
                 there = shown_at(position[s, k], turn, scale, s, k, offsets[i, corner])
                 turned = turn_of(turn, s, k) + frame_turn[i, corner]

@@ -100,14 +100,19 @@ class SketchSample:
 
     @property
     def cell_size(self) -> float:
-        """Texels: the square root of a typical cell's area, of several samples their geometric mean."""
-        return float(np.exp(np.log(self._typical).mean() / 2))
+        """Texels: the square root of a typical cell's area, of several samples with cells their geometric mean.
+
+        Raises: ExemplarError, if there is no cell.
+        """
+        if not len(self.cells):
+            raise ExemplarError("the sample has no cells: give it a sketch that closes some")
+        return float(np.exp(np.log(self._typical[np.unique(self.owner)]).mean() / 2))
 
     @property
     def _typical(self) -> Float64[np.ndarray, "sample"]:
-        """The area of a typical cell of each sample."""
-        areas = [self.cells.area[self.owner == number] for number in range(int(self.owner.max(initial=0)) + 1)]
-        return np.array([typical_area(area) for area in areas])
+        """The area of a typical cell of each sample, up to the last that has any; 0 for one that has none."""
+        areas = [self.cells.area[self.owner == number] for number in range(int(self.owner.max(initial=-1)) + 1)]
+        return np.array([typical_area(area) if len(area) else 0.0 for area in areas])
 
 
 def _together(
