@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tests.sketch.drawn import euler, voronoi, wall
@@ -114,12 +114,13 @@ def test_threads_change_nothing_and_seeds_do(restored_threads: None) -> None:
     scale=st.floats(0.3, 2),
 )
 def test_nothing_ever_crosses_or_flips(count: int, seed: int, radius: float, strength: float, scale: float) -> None:
+    assume(len(voronoi(count, seed).cells()) > 1)  # fewer make no patch of closed cells
     tiling = tiling_of(count, seed, scale=scale)
     cells = tiling.graph.cells()
     graph = refined(tiling, seed, radius=radius, iterations=4, strength=strength)
     assert not len(graph.crossings())
     assert not graph.flipped(cells).any()
-    assert euler(graph) == 0 and len(graph.cells()) == len(cells)
+    assert euler(graph) == euler(tiling.graph) and len(graph.cells()) == len(cells)
     if cells.area.sum() == pytest.approx(np.prod(graph.size)):
         assert graph.cells().area.sum() == pytest.approx(np.prod(graph.size))
 
